@@ -1,0 +1,28 @@
+# What every package of the workspace compiles with. Comes to a package by
+# find_package(catkin COMPONENTS vins_core); vins_core itself includes this file directly.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+option(VINS_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
+
+# vins_target_options(TARGET ...): C++17, the warnings, and floating point that does not depend on
+# whether the machine has fused multiply-add.
+function(vins_target_options)
+  foreach(target ${ARGN})
+    set_target_properties(${target} PROPERTIES
+      CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -ffp-contract=off
+      $<$<BOOL:${VINS_WARNINGS_AS_ERRORS}>:-Werror>)
+  endforeach()
+endfunction()
+
+# vins_add_gtests(LIBRARY NAME ...): one executable test/NAME.cpp each, linked to LIBRARY.
+function(vins_add_gtests library)
+  foreach(name ${ARGN})
+    catkin_add_gtest(${library}_${name} test/${name}.cpp WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    if(TARGET ${library}_${name})
+      target_link_libraries(${library}_${name} ${library} gtest_main)
+      vins_target_options(${library}_${name})
+    endif()
+  endforeach()
+endfunction()

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <ostream>
+
+#include <Eigen/Core>
+
+#include "vins_core/time.h"
+
+namespace vins {
+
+/// One reading of the inertial sensor, in the body frame (body = IMU).
+struct ImuSample {
+  Stamp stamp = 0;                                             ///< [ns], the IMU's clock
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();      ///< specific force [m/s^2]
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< [rad/s]
+
+  /// No component is NaN or infinite.
+  bool isFinite() const { return acceleration.allFinite() && angular_velocity.allFinite(); }
+};
+
+/// Noise model of the inertial sensor: white noise and random-walk biases, as continuous-time
+/// densities (IEEE Std 952; in VINS-Mono's configuration: acc_n, gyr_n, acc_w, gyr_w, g_norm).
+struct ImuNoise {
+  double accelerometer_noise = 0.08;    ///< acc_n [m/s^2/sqrt(Hz)]
+  double gyroscope_noise = 0.004;       ///< gyr_n [rad/s/sqrt(Hz)]
+  double accelerometer_walk = 0.00004;  ///< acc_w [m/s^3/sqrt(Hz)]
+  double gyroscope_walk = 2.0e-6;       ///< gyr_w [rad/s^2/sqrt(Hz)]
+  double gravity = 9.81;                ///< g_norm, magnitude [m/s^2]
+
+  /// Throws InputError naming the first value that is not positive and finite.
+  void validate() const;
+};
+
+std::ostream& operator<<(std::ostream& out, const ImuNoise& noise);
+
+}  // namespace vins
