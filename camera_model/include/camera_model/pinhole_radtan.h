@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "camera_model/camera.h"
+#include "camera_model/radtan_distortion.h"
+
+namespace vins {
+
+/// Pinhole camera with radial and tangential distortion, as OpenCV's calib3d has it.
+/// Parameters: fx, fy, cx, cy [px], k1, k2, p1, p2, k3 [-].
+class PinholeRadtan : public Camera {
+ public:
+  PinholeRadtan(const std::string& name, ImageSize size, const CameraParameters& parameters);
+
+  CameraModel model() const override { return CameraModel::kPinhole; }
+  using Camera::project;
+  std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_c,
+                                         ProjectionJacobians* jacobians) const override;
+  std::optional<Eigen::Vector3d> unproject(const Eigen::Vector2d& pixel) const override;
+  CameraParameters parameters() const override;
+  std::vector<std::string> parameterNames() const override;
+  std::unique_ptr<Camera> withParameters(const CameraParameters& parameters) const override;
+  std::unique_ptr<Camera> scaledTo(ImageSize size) const override;
+
+ private:
+  double fx_, fy_, cx_, cy_;
+  RadtanDistortion distortion_;
+};
+
+}  // namespace vins

@@ -1,0 +1,94 @@
+#include "camera_model/radial_polynomial.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vins {
+namespace {
+
+constexpr int kNodes = 257;
+constexpr int kMaxNewtonSteps = 40;
+/// Newton squares the error: after a step this small none is left.
+constexpr double kLastStep = 1e-7;
+
+}  // namespace
+
+RadialPolynomial::RadialPolynomial(const std::array<double, 4>& coefficients, double limit,
+                                   double reach)
+    : c_(coefficients), max_radius_(findMaxRadius(limit)) {
+  max_distorted_ = max_radius_ * ratio(max_radius_ * max_radius_);
+  fillTable(reach);
+}
+
+double RadialPolynomial::ratio(double squared_radius) const {
+  const double s = squared_radius;
+  return 1.0 + s * (c_[0] + s * (c_[1] + s * (c_[2] + s * c_[3])));
+}
+
+double RadialPolynomial::slope(double squared_radius) const {
+  const double s = squared_radius;
+  return 1.0 + s * (3.0 * c_[0] + s * (5.0 * c_[1] + s * (7.0 * c_[2] + s * 9.0 * c_[3])));
+}
+
+double RadialPolynomial::findMaxRadius(double limit) const {
+  // Steps of 0.5 % find every dip of the slope that is wide enough to matter; bisection its edge.
+  double inside = 0.0;
+  for (double r = 1e-3; inside < limit; r *= 1.005) {
+    double outside = std::min(r, limit);
+    if (slope(outside * outside) < kMinSlope) {
+      for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (inside + outside);
+        (slope(middle * middle) < kMinSlope ? outside : inside) = middle;
+      }
+      return inside;
+    }
+    inside = outside;
+  }
+  return limit;
+}
+
+double RadialPolynomial::invertByBisection(double distorted) const {
+  double low = 0.0;
+  double high = max_radius_;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (middle * ratio(middle * middle) < distorted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+void RadialPolynomial::fillTable(double reach) {
+  inverse_ratios_.resize(kNodes, 1.0);
+  const double end = std::clamp(reach, 1e-3, max_distorted_);
+  squared_reach_ = end * end;
+  nodes_per_squared_distorted_ = (kNodes - 1) / squared_reach_;
+  for (int i = 1; i < kNodes; ++i) {
+    const double distorted = std::sqrt(squared_reach_ * i / (kNodes - 1));
+    inverse_ratios_[i] = invertByBisection(distorted) / distorted;
+  }
+}
+
+double RadialPolynomial::nearInverseRatio(double squared_distorted) const {
+  if (squared_distorted < squared_reach_) {
+    const double position = squared_distorted * nodes_per_squared_distorted_;
+    const auto i = static_cast<std::size_t>(position);
+    const double share = position - static_cast<double>(i);
+    return inverse_ratios_[i] + share * (inverse_ratios_[i + 1] - inverse_ratios_[i]);
+  }
+  const double distorted = std::min(std::sqrt(squared_distorted), max_distorted_);
+  return invertByBisection(distorted) / distorted;
+}
+
+std::optional<double> RadialPolynomial::invert(double distorted) const {
+  if (!(distorted <= max_distorted_)) return std::nullopt;
+  double r = distorted * nearInverseRatio(distorted * distorted);
+  for (int i = 0; i < kMaxNewtonSteps; ++i) {
+    const double s = r * r;
+    const double step = (distorted - r * ratio(s)) / slope(s);
+    r = std::min(r + step, max_radius_);
+    if (std::abs(step) < kLastStep) break;
+  }
+  return r;
+}
+
+}  // namespace vins

@@ -1,0 +1,196 @@
+#include "camera_model/camera_file.h"
+
+#include <cstdio>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "example_cameras.h"
+#include "vins_core/input_error.h"
+#include "vins_core/text_file.h"
+
+namespace vins {
+namespace {
+
+using testing::parametersOf;
+
+constexpr char kVinsMono[] = R"(%YAML:1.0
+
+#common parameters
+imu_topic: "/imu0"
+image_topic: "/cam0/image_raw"
+
+#camera calibration
+model_type: PINHOLE
+camera_name: camera
+image_width: 752
+image_height: 480
+distortion_parameters:
+   k1: -2.917e-01
+   k2: 8.228e-02
+   p1: 5.333e-05
+   p2: -1.578e-04
+projection_parameters:
+   fx: 4.616e+02
+   fy: 4.603e+02
+   cx: 3.630e+02
+   cy: 2.481e+02
+max_cnt: 150
+)";
+
+constexpr char kKalibr[] = R"(cam0:
+  cam_overlaps: [1]
+  camera_model: pinhole
+  distortion_coeffs: [0.0034, 0.0007, -0.002, 0.0002]
+  distortion_model: equidistant
+  intrinsics: [190.9, 190.8, 254.9, 256.8]
+  resolution: [512, 512]
+  rostopic: /cam0/image_raw
+cam1:
+  T_cn_cnm1:
+  - [1.0, 0.0, 0.0, -0.1]
+  - [0.0, 1.0, 0.0, 0.0]
+  - [0.0, 0.0, 1.0, 0.0]
+  - [0.0, 0.0, 0.0, 1.0]
+  camera_model: omni
+  distortion_coeffs: [-0.33, 0.13, 0.0005, 0.0006]
+  distortion_model: radtan
+  intrinsics: [0.8, 833.0, 830.3, 373.8, 253.7]
+  resolution: [752, 480]
+)";
+
+std::unique_ptr<Camera> read(const std::string& text, const std::string& camera = "cam0") {
+  return readCamera(Parameters::parse(text, "rig.yaml"), camera);
+}
+
+std::string errorOf(const std::string& text, const std::string& camera = "cam0") {
+  try {
+    read(text, camera);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(CameraFile, ReadsTheCameraOutOfAVinsMonoConfiguration) {
+  const auto camera = read(kVinsMono);
+  EXPECT_EQ(camera->model(), CameraModel::kPinhole);
+  EXPECT_EQ(camera->imageSize(), (ImageSize{752, 480}));
+  EXPECT_EQ(camera->parameters(), parametersOf({461.6, 460.3, 363.0, 248.1, -0.2917, 0.08228,
+                                                5.333e-05, -1.578e-04, 0.0}));
+}
+
+TEST(CameraFile, ReadsKalibrCamchains) {
+  const auto fisheye = read(kKalibr);
+  EXPECT_EQ(fisheye->model(), CameraModel::kKannalaBrandt);
+  EXPECT_EQ(fisheye->parameters(),
+            parametersOf({0.0034, 0.0007, -0.002, 0.0002, 190.9, 190.8, 254.9, 256.8}));
+  const auto omni = read(kKalibr, "cam1");
+  EXPECT_EQ(omni->model(), CameraModel::kMei);
+  EXPECT_EQ(omni->imageSize(), (ImageSize{752, 480}));
+  EXPECT_EQ(omni->parameters(),
+            parametersOf({0.8, -0.33, 0.13, 0.0005, 0.0006, 833.0, 830.3, 373.8, 253.7}));
+}
+
+TEST(CameraFile, CamodocalFormRoundTripsExactly) {
+  for (const auto& camera : testing::exampleCameras()) {
+    const auto back = read(toCamodocalYaml(*camera));
+    EXPECT_EQ(back->model(), camera->model());
+    EXPECT_EQ(back->name(), camera->name());
+    EXPECT_EQ(back->imageSize(), camera->imageSize());
+    EXPECT_EQ(back->parameters(), camera->parameters());
+  }
+}
+
+TEST(CameraFile, KalibrFormRoundTripsExactly) {
+  for (const auto& camera : testing::exampleCameras()) {
+    if (camera->model() == CameraModel::kScaramuzza) continue;
+    const auto back = read(toKalibrYaml(*camera, "cam3"), "cam3");
+    EXPECT_EQ(back->model(), camera->model());
+    EXPECT_EQ(back->parameters(), camera->parameters());
+  }
+}
+
+TEST(CameraFile, RefusesToWriteWhatKalibrHasNoFormFor) {
+  EXPECT_THROW(toKalibrYaml(*testing::exampleCameras()[3]), InputError);
+  CameraParameters p = testing::exampleCameras()[0]->parameters();
+  p[8] = 0.01;
+  EXPECT_THROW(toKalibrYaml(*testing::exampleCameras()[0]->withParameters(p)), InputError);
+}
+
+TEST(CameraFile, KeepsK3) {
+  CameraParameters p = testing::exampleCameras()[0]->parameters();
+  p[8] = 0.0123;
+  const auto camera = testing::exampleCameras()[0]->withParameters(p);
+  EXPECT_EQ(read(toCamodocalYaml(*camera))->parameters(), p);
+}
+
+TEST(CameraFile, WritesWhatOpencvsReaderReads) {
+  // VINS-Mono and camodocal read by cv::FileStorage.
+  for (const auto& camera : testing::exampleCameras()) {
+    const cv::FileStorage storage(toCamodocalYaml(*camera),
+                                  cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    EXPECT_EQ(static_cast<std::string>(storage["model_type"]), toString(camera->model()));
+    EXPECT_EQ(static_cast<int>(storage["image_width"]), camera->imageSize().width);
+    const char* section =
+        camera->model() == CameraModel::kScaramuzza ? "affine_parameters" : "projection_parameters";
+    const cv::FileNode node = storage[section];
+    const auto names = camera->parameterNames();
+    const CameraParameters p = camera->parameters();
+    int found = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (node[names[i]].empty()) continue;
+      ++found;
+      EXPECT_DOUBLE_EQ(static_cast<double>(node[names[i]]), p[static_cast<int>(i)]) << names[i];
+    }
+    EXPECT_GE(found, 4);
+  }
+}
+
+TEST(CameraFile, OcamsInversePolynomialIsNearTheInverse) {
+  const auto cameras = testing::exampleCameras();
+  const auto& camera = static_cast<const Scaramuzza&>(*cameras[3]);
+  const std::vector<double> c = camera.fitInversePolynomial(14);
+  for (double u = 10.0; u < 790.0; u += 20.0) {
+    const Eigen::Vector3d b = *camera.unproject({u, 400.0});
+    const double angle = std::atan2(-b.z(), b.head<2>().norm());
+    double radius = 0.0;
+    for (std::size_t i = c.size(); i-- > 0;) radius = radius * angle + c[i];
+    EXPECT_NEAR(radius, std::hypot((u - 402.0 - 3.0 * 0.0003) / 1.0002, 3.0), 0.01);
+  }
+}
+
+TEST(CameraFile, ErrorsNameFileKeyFoundAndAllowed) {
+  EXPECT_EQ(
+      errorOf(replaced(kVinsMono, "PINHOLE", "PINWHEEL")),
+      "rig.yaml:8: key 'model_type': found 'PINWHEEL'; allowed: PINHOLE, KANNALA_BRANDT, MEI, "
+      "SCARAMUZZA");
+  EXPECT_EQ(errorOf(replaced(kVinsMono, "fx: 4.616e+02", "f_x: 4.616e+02")),
+            "rig.yaml: projection_parameters: key 'fx' is missing; allowed: a number; line 18 has "
+            "'f_x': is that meant?");
+  EXPECT_EQ(errorOf(replaced(kVinsMono, "4.616e+02", "-4.616e+02")),
+            "rig.yaml: camera 'camera': fx: found -461.600000; allowed: a number above 0");
+  EXPECT_EQ(errorOf(replaced(kVinsMono, "752", "0")),
+            "rig.yaml:10: key 'image_width': found '0'; allowed: a whole number from 1 to 100000");
+  EXPECT_EQ(errorOf(replaced(kKalibr, "pinhole", "ds")),
+            "rig.yaml:3: key 'camera_model': found 'ds'; allowed: pinhole, omni");
+  EXPECT_EQ(errorOf("imu_topic: /imu0\n"),
+            "rig.yaml: key 'model_type' is missing; allowed: PINHOLE, KANNALA_BRANDT, MEI, "
+            "SCARAMUZZA");
+}
+
+TEST(CameraFile, ReadsFromDisk) {
+  const std::string path = ::testing::TempDir() + "camera_file_test.yaml";
+  writeTextFile(path, kKalibr);
+  EXPECT_EQ(readCameraFile(path, "cam1")->model(), CameraModel::kMei);
+  std::remove(path.c_str());
+  EXPECT_THROW(readCameraFile(path), InputError);
+}
+
+}  // namespace
+}  // namespace vins
