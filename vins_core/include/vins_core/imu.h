@@ -18,6 +18,15 @@ struct ImuSample {
   bool isFinite() const { return acceleration.allFinite() && angular_velocity.allFinite(); }
 };
 
+/// Estimated biases of the inertial sensor with their covariances, in the body frame.
+struct ImuBiasEstimate {
+  Stamp stamp = 0;                                                     ///< [ns]
+  Eigen::Vector3d accelerometer = Eigen::Vector3d::Zero();             ///< [m/s^2]
+  Eigen::Vector3d gyroscope = Eigen::Vector3d::Zero();                 ///< [rad/s]
+  Eigen::Matrix3d accelerometer_covariance = Eigen::Matrix3d::Zero();  ///< [m^2/s^4]
+  Eigen::Matrix3d gyroscope_covariance = Eigen::Matrix3d::Zero();      ///< [rad^2/s^2]
+};
+
 /// Noise model of the inertial sensor: white noise and random-walk biases, as continuous-time
 /// densities (IEEE Std 952; in VINS-Mono's configuration: acc_n, gyr_n, acc_w, gyr_w, g_norm).
 struct ImuNoise {
