@@ -44,22 +44,39 @@ void write(cv::Mat* picture, const std::string& text, cv::Point at) {
   cv::putText(*picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.5, kInk, 1, cv::LINE_AA);
 }
 
-void shadeCells(cv::Mat* picture, ImageSize size, const std::vector<int>& cells) {
+/// Calls visit(upper left, lower right, corners in it) for each cell of the coverage count.
+template <typename Visit>
+void forEachCell(ImageSize size, const std::vector<int>& cells, Visit visit) {
   for (int row = 0; row < kCoverageRows; ++row) {
     for (int column = 0; column < kCoverageColumns; ++column) {
       const cv::Point from(size.width * column / kCoverageColumns,
                            size.height * row / kCoverageRows);
       const cv::Point to(size.width * (column + 1) / kCoverageColumns - 1,
                          size.height * (row + 1) / kCoverageRows - 1);
-      const int count = cells[static_cast<std::size_t>(row * kCoverageColumns + column)];
-      const double shade = 245.0 - std::min(count, 40);
-      const cv::Scalar colour =
-          count == 0 ? cv::Scalar(215, 215, 255) : cv::Scalar(shade, 250, shade);
-      cv::rectangle(*picture, from, to, colour, cv::FILLED);
-      cv::rectangle(*picture, from, to, cv::Scalar(225, 225, 225));
-      write(picture, std::to_string(count), from + cv::Point(4, 16));
+      visit(from, to, cells[static_cast<std::size_t>(row * kCoverageColumns + column)]);
     }
   }
+}
+
+void shadeCells(cv::Mat* picture, ImageSize size, const std::vector<int>& cells) {
+  forEachCell(size, cells, [&](cv::Point from, cv::Point to, int count) {
+    const double shade = 245.0 - std::min(count, 40);
+    const cv::Scalar colour =
+        count == 0 ? cv::Scalar(215, 215, 255) : cv::Scalar(shade, 250, shade);
+    cv::rectangle(*picture, from, to, colour, cv::FILLED);
+    cv::rectangle(*picture, from, to, cv::Scalar(225, 225, 225));
+  });
+}
+
+/// Over the dots, on paper of their own.
+void writeCounts(cv::Mat* picture, ImageSize size, const std::vector<int>& cells) {
+  forEachCell(size, cells, [&](cv::Point from, cv::Point /*to*/, int count) {
+    const std::string text = std::to_string(count);
+    const int width = 4 + 10 * static_cast<int>(text.size());
+    cv::rectangle(*picture, from + cv::Point(2, 2), from + cv::Point(width, 18), kPaper,
+                  cv::FILLED);
+    write(picture, text, from + cv::Point(3, 15));
+  });
 }
 
 cv::Mat drawArrows(ImageSize size, const std::vector<CalibrationView>& views,
@@ -86,10 +103,6 @@ cv::Mat drawCloud(int side, const std::vector<CalibrationView>& views,
   const double scale = 0.45 * side / (3.5 * calibration.rms);
   cv::line(picture, {side / 2, 0}, {side / 2, side}, cv::Scalar(215, 215, 215));
   cv::line(picture, {0, side / 2}, {side, side / 2}, cv::Scalar(215, 215, 215));
-  for (int ring = 1; ring <= 3; ++ring) {
-    const int radius = cvRound(16.0 * ring * scale * calibration.rms);
-    cv::circle(picture, fine(center), radius, cv::Scalar(190, 190, 190), 1, cv::LINE_AA, 4);
-  }
   for (std::size_t i = 0; i < views.size(); ++i) {
     const ViewFit& fit = calibration.views[i];
     for (std::size_t j = 0; j < fit.residuals.size(); ++j) {
@@ -102,6 +115,10 @@ cv::Mat drawCloud(int side, const std::vector<CalibrationView>& views,
         drawCross(&picture, at);
       }
     }
+  }
+  for (int ring = 1; ring <= 3; ++ring) {
+    const int radius = cvRound(16.0 * ring * scale * calibration.rms);
+    cv::circle(picture, fine(center), radius, cv::Scalar(120, 120, 120), 1, cv::LINE_AA, 4);
   }
   return picture;
 }
@@ -130,6 +147,7 @@ cv::Mat drawCoverage(ImageSize size, const std::vector<CalibrationView>& views,
       }
     }
   }
+  writeCounts(&picture, size, cells);
   const auto empty = std::count(cells.begin(), cells.end(), 0);
   return withCaption(picture, std::to_string(calibration.corners_used) + " corners in use, " +
                                   std::to_string(empty) + " of " + std::to_string(cells.size()) +
