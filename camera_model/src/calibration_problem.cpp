@@ -1,5 +1,6 @@
 #include "calibration_problem.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>

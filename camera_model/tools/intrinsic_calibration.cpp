@@ -35,34 +35,36 @@ struct Arguments {
   std::string extension;
   std::string output;
   bool view_results = false;
+  bool write_kalibr = false;
   bool verbose = false;
 };
 
 po::options_description describeOptions() {
   po::options_description options("Options");
-  options.add_options()("help", "print this text")  //
-      ("width,w", po::value<int>()->default_value(8), "inner corners in a row of the board")(
-          "height,h", po::value<int>()->default_value(12), "rows of inner corners")(
-          "size,s", po::value<double>()->default_value(7.0), "edge of a square, in any unit")(
-          "input,i", po::value<std::string>()->default_value("calibrationdata"),
-          "folder of the images")("prefix,p", po::value<std::string>()->default_value(""),
-                                  "take images whose names begin with this")(
-          "file-extension,e", po::value<std::string>()->default_value(".png"),
-          "take images whose names end with this")("camera-model",
-                                                   po::value<std::string>()->default_value("mei"),
-                                                   "pinhole, kannala-brandt, mei or scaramuzza")(
-          "camera-name", po::value<std::string>()->default_value("camera"),
-          "name of the camera, and of the files written")(
-          "output,o", po::value<std::string>()->default_value("."),
-          "folder for the results; made where it is missing")(
-          "no-k3", po::bool_switch(),
-          "pinhole: hold k3 at zero, for programs that read four coefficients")(
-          "keep-outliers", po::bool_switch(), "use every corner, also those that disagree")(
-          "view-results", po::bool_switch(), "also write each image with its corners drawn")(
-          "opencv", po::value<bool>()->default_value(true)->implicit_value(true),
-          "accepted for compatibility; corners are always found by OpenCV")(
-          "verbose,v", po::value<bool>()->default_value(false)->implicit_value(true),
-          "name each image while looking for the board");
+  auto add = options.add_options();
+  add("help", "print this text");
+  add("width,w", po::value<int>()->default_value(8), "inner corners in a row of the board");
+  add("height,h", po::value<int>()->default_value(12), "rows of inner corners");
+  add("size,s", po::value<double>()->default_value(7.0), "edge of a square, in any unit");
+  add("input,i", po::value<std::string>()->default_value("calibrationdata"),
+      "folder of the images");
+  add("prefix,p", po::value<std::string>()->default_value(""), "take images whose names begin so");
+  add("file-extension,e", po::value<std::string>()->default_value(".png"),
+      "take images whose names end so");
+  add("camera-model", po::value<std::string>()->default_value("mei"),
+      "pinhole, kannala-brandt, mei or scaramuzza");
+  add("camera-name", po::value<std::string>()->default_value("camera"),
+      "name of the camera, and of the files written");
+  add("output,o", po::value<std::string>()->default_value("."),
+      "folder for the results; made where it is missing");
+  add("no-k3", po::bool_switch(), "pinhole: hold k3 at zero, for who reads four coefficients");
+  add("kalibr", po::bool_switch(), "also write the camera as Kalibr's camchain, without k3");
+  add("keep-outliers", po::bool_switch(), "use every corner, also those that disagree");
+  add("view-results", po::bool_switch(), "also write each image with its corners drawn");
+  add("opencv", po::value<bool>()->default_value(true)->implicit_value(true),
+      "accepted for compatibility; corners are always found by OpenCV");
+  add("verbose,v", po::value<bool>()->default_value(false)->implicit_value(true),
+      "name each image while looking for the board");
   return options;
 }
 
@@ -95,7 +97,14 @@ std::optional<Arguments> parseArguments(int argc, char** argv) {
   arguments.extension = values["file-extension"].as<std::string>();
   arguments.output = values["output"].as<std::string>();
   arguments.view_results = values["view-results"].as<bool>();
+  arguments.write_kalibr = values["kalibr"].as<bool>();
   arguments.verbose = values["verbose"].as<bool>();
+  if (arguments.write_kalibr) {
+    arguments.calibration.estimate_k3 = false;
+    if (arguments.calibration.model == vins::CameraModel::kScaramuzza) {
+      throw vins::InputError("--kalibr: found the model scaramuzza, for which Kalibr has no form");
+    }
+  }
   arguments.calibration.board.validate();
   return arguments;
 }
@@ -253,6 +262,10 @@ void writeResults(const Arguments& arguments, const std::vector<vins::Calibratio
   const fs::path yaml = folder / (name + "_camera_calib.yaml");
   vins::writeTextFile(yaml.string(), vins::toCamodocalYaml(*calibration.camera));
   vins::writeTextFile((folder / (name + "_report.txt")).string(), report);
+  if (arguments.write_kalibr) {
+    vins::writeTextFile((folder / (name + "_camchain.yaml")).string(),
+                        vins::toKalibrYaml(*calibration.camera));
+  }
   const vins::ImageSize size = arguments.calibration.image_size;
   writeImage(folder / (name + "_coverage.png"), vins::drawCoverage(size, views, calibration));
   writeImage(folder / (name + "_residuals.png"), vins::drawResiduals(size, views, calibration));

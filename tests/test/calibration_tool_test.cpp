@@ -55,13 +55,19 @@ TEST_P(CalibrationTool, RecoversTheCameraFromRenderedImages) {
   ASSERT_EQ(rendered.exit_code, 0) << rendered.output;
   const Outcome calibrated =
       run(kCalibrate + " -w 9 -h 7 -s 40 -i " + (folder / "images").string() +
-          " --prefix board -e .png --no-k3 --camera-model " + toString(truth->model()) +
-          " --camera-name " + GetParam() + " -o " + (folder / "results").string());
+          " --prefix board -e .png" + (GetParam() == "ocam" ? "" : " --kalibr") +
+          " --camera-model " + toString(truth->model()) + " --camera-name " + GetParam() + " -o " +
+          (folder / "results").string());
   ASSERT_EQ(calibrated.exit_code, 0) << calibrated.output;
 
   const auto estimate =
       readCameraFile((folder / "results" / (GetParam() + "_camera_calib.yaml")).string());
   EXPECT_EQ(estimate->model(), truth->model());
+  if (GetParam() != "ocam") {
+    const auto kalibr =
+        readCameraFile((folder / "results" / (GetParam() + "_camchain.yaml")).string());
+    EXPECT_EQ(kalibr->parameters(), estimate->parameters());
+  }
   EXPECT_EQ(estimate->imageSize(), truth->imageSize());
   EXPECT_NEAR(focalLength(*estimate), focalLength(*truth), 0.001 * focalLength(*truth));
   for (const char* name : {"_report.txt", "_coverage.png", "_residuals.png"}) {
@@ -83,6 +89,7 @@ TEST(CalibrationToolErrors, TellWhatToDo) {
       {"-i ../config --prefix board", "no image 'board*.png' in it"},
       {"-w 2", "found 2 x 12 inner corners"},
       {"--camera-model fisheye", "found 'fisheye'; allowed: pinhole, kannala-brandt"},
+      {"--kalibr --camera-model scaramuzza", "Kalibr has no form"},
       {"--focal 3", "unrecognised option '--focal'"},
   };
   for (const auto& c : cases) {

@@ -20,15 +20,16 @@ namespace {
 
 po::options_description describeOptions() {
   po::options_description options("Options");
-  options.add_options()("help", "print this text")("camera", po::value<std::string>()->required(),
-                                                   "camera file to render through")(
-      "output,o", po::value<std::string>()->required(), "folder for the images; made if missing")(
-      "count,n", po::value<int>()->default_value(30), "number of images")(
-      "seed", po::value<std::uint64_t>()->default_value(1), "same seed, same images")(
-      "width,w", po::value<int>()->default_value(9), "inner corners in a row of the board")(
-      "height,h", po::value<int>()->default_value(7), "rows of inner corners")(
-      "size,s", po::value<double>()->default_value(40.0), "edge of a square")(
-      "noise", po::value<double>()->default_value(2.0), "deviation of the noise [gray levels]");
+  auto add = options.add_options();
+  add("help", "print this text");
+  add("camera", po::value<std::string>()->required(), "camera file to render through");
+  add("output,o", po::value<std::string>()->required(), "folder for the images; made if missing");
+  add("count,n", po::value<int>()->default_value(30), "number of images");
+  add("seed", po::value<std::uint64_t>()->default_value(1), "same seed, same images");
+  add("width,w", po::value<int>()->default_value(9), "inner corners in a row of the board");
+  add("height,h", po::value<int>()->default_value(7), "rows of inner corners");
+  add("size,s", po::value<double>()->default_value(40.0), "edge of a square");
+  add("noise", po::value<double>()->default_value(2.0), "deviation of the noise [gray levels]");
   return options;
 }
 

@@ -7,7 +7,7 @@
 
 namespace vins {
 
-Trajectory::Trajectory(std::vector<StampedPose> poses) {
+Trajectory::Trajectory(const std::vector<StampedPose>& poses) {
   poses_.reserve(poses.size());
   for (const StampedPose& pose : poses) append(pose);
 }

@@ -20,7 +20,7 @@ class Trajectory {
   Trajectory() = default;
 
   /// Takes poses with strictly rising stamps; throws InputError naming the first stamp that is not.
-  explicit Trajectory(std::vector<StampedPose> poses);
+  explicit Trajectory(const std::vector<StampedPose>& poses);
 
   /// Appends a pose; throws InputError if its stamp is not above the last one.
   void append(const StampedPose& pose);
