@@ -63,12 +63,13 @@ Eigen::Vector4d centerAndFocalLengths(const Camera& camera) {
   return {center.x(), center.y(), jacobians.J_pixel_point(0, 0), jacobians.J_pixel_point(1, 1)};
 }
 
-/// Standard deviations of centerAndFocalLengths(), by differences of a tenth of a deviation.
+/// Standard deviations of centerAndFocalLengths(), by differences. The step is small against a
+/// deviation, because strongly correlated parameters (xi and gamma) must cancel in first order.
 Eigen::Vector4d centerAndFocalDeviations(const Calibration& calibration) {
   const CameraParameters p = calibration.camera->parameters();
   Eigen::Matrix<double, 4, Eigen::Dynamic> J(4, p.size());
   for (int i = 0; i < p.size(); ++i) {
-    const double step = 0.1 * std::sqrt(calibration.covariance(i, i));
+    const double step = 1e-4 * std::sqrt(calibration.covariance(i, i));
     J.col(i).setZero();
     if (step == 0.0) continue;
     CameraParameters moved = p;
