@@ -20,16 +20,6 @@ RadialPolynomial::RadialPolynomial(const std::array<double, 4>& coefficients, do
   fillTable(reach);
 }
 
-double RadialPolynomial::ratio(double squared_radius) const {
-  const double s = squared_radius;
-  return 1.0 + s * (c_[0] + s * (c_[1] + s * (c_[2] + s * c_[3])));
-}
-
-double RadialPolynomial::slope(double squared_radius) const {
-  const double s = squared_radius;
-  return 1.0 + s * (3.0 * c_[0] + s * (5.0 * c_[1] + s * (7.0 * c_[2] + s * 9.0 * c_[3])));
-}
-
 double RadialPolynomial::findMaxRadius(double limit) const {
   // Steps of 0.5 % find every dip of the slope that is wide enough to matter; bisection its edge.
   double inside = 0.0;
@@ -68,13 +58,7 @@ void RadialPolynomial::fillTable(double reach) {
   }
 }
 
-double RadialPolynomial::nearInverseRatio(double squared_distorted) const {
-  if (squared_distorted < squared_reach_) {
-    const double position = squared_distorted * nodes_per_squared_distorted_;
-    const auto i = static_cast<std::size_t>(position);
-    const double share = position - static_cast<double>(i);
-    return inverse_ratios_[i] + share * (inverse_ratios_[i + 1] - inverse_ratios_[i]);
-  }
+double RadialPolynomial::inverseRatioBeyondReach(double squared_distorted) const {
   const double distorted = std::min(std::sqrt(squared_distorted), max_distorted_);
   return invertByBisection(distorted) / distorted;
 }

@@ -40,6 +40,12 @@ Eigen::Vector2d RadtanDistortion::map(const Eigen::Vector2d& point, Eigen::Matri
           y * ratio + k_[2] * (s + 2.0 * y * y) + 2.0 * k_[3] * x * y};
 }
 
+bool RadtanDistortion::isInvertible(const Eigen::Vector2d& point, const Eigen::Matrix2d& J,
+                                    double slack) const {
+  return point.squaredNorm() <= squared_max_radius_ * (1.0 + slack) &&
+         stretchesBy((1.0 - slack) * RadialPolynomial::kMinSlope, J);
+}
+
 std::optional<Eigen::Vector2d> RadtanDistortion::distort(const Eigen::Vector2d& point,
                                                          Eigen::Matrix2d* J_point,
                                                          Matrix25* J_coefficients) const {
@@ -54,12 +60,6 @@ std::optional<Eigen::Vector2d> RadtanDistortion::distort(const Eigen::Vector2d& 
         y * s, y * s * s, s + 2.0 * y * y, 2.0 * x * y, y * s * s * s;
   }
   return distorted;
-}
-
-bool RadtanDistortion::isInvertible(const Eigen::Vector2d& point, const Eigen::Matrix2d& J,
-                                    double slack) const {
-  return point.squaredNorm() <= squared_max_radius_ * (1.0 + slack) &&
-         stretchesBy((1.0 - slack) * RadialPolynomial::kMinSlope, J);
 }
 
 std::optional<Eigen::Vector2d> RadtanDistortion::undistort(const Eigen::Vector2d& distorted) const {
@@ -79,8 +79,8 @@ std::optional<Eigen::Vector2d> RadtanDistortion::undistort(const Eigen::Vector2d
     step = {inverse_determinant * (J(1, 1) * error.x() - J(0, 1) * error.y()),
             inverse_determinant * (J(0, 0) * error.y() - J(0, 1) * error.x())};
     point += step;
-    // Newton squares the error: after a step this small none is left.
-    if (step.squaredNorm() < 1e-14 * (1.0 + point.squaredNorm())) return point;
+    // Newton squares the error: what is left after a step of 1e-6 is of the order of 1e-12.
+    if (step.squaredNorm() < 1e-12 * (1.0 + point.squaredNorm())) return point;
   }
   return std::nullopt;
 }

@@ -53,14 +53,15 @@ TEST(RadialPolynomial, StartIsNearTheInverseWithinReachAndBeyond) {
   }
 }
 
-TEST(RadtanDistortion, UndistortsToRounding) {
+TEST(RadtanDistortion, UndistortsToTheLastDigits) {
   const RadtanDistortion distortion({-0.28, 0.07, 0.004, -0.003, -0.01}, 0.9);
   for (double x = -0.9; x <= 0.9; x += 0.1) {
     for (double y = -0.7; y <= 0.7; y += 0.1) {
       const Eigen::Vector2d point(x, y);
       const auto back = distortion.undistort(*distortion.distort(point, nullptr, nullptr));
       ASSERT_TRUE(back);
-      EXPECT_LT((*back - point).norm(), 1e-14);
+      // The last step was below 1e-6, and Newton's method squares the error.
+      EXPECT_LT((*back - point).norm(), 1e-12);
     }
   }
 }

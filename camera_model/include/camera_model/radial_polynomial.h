@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -22,19 +23,32 @@ class RadialPolynomial {
   double maxDistorted() const { return max_distorted_; }
 
   /// d(r) / r of the squared radius.
-  double ratio(double squared_radius) const;
+  double ratio(double squared_radius) const {
+    const double s = squared_radius;
+    return 1.0 + s * (c_[0] + s * (c_[1] + s * (c_[2] + s * c_[3])));
+  }
 
   /// d'(r) of the squared radius.
-  double slope(double squared_radius) const;
+  double slope(double squared_radius) const {
+    const double s = squared_radius;
+    return 1.0 + s * (3.0 * c_[0] + s * (5.0 * c_[1] + s * (7.0 * c_[2] + s * 9.0 * c_[3])));
+  }
 
   /// About r / d(r) of the squared distorted radius: a start for Newton's method, right to 1e-4 or
   /// better. Within reach it comes from a table; beyond the range it is the value at its end.
-  double nearInverseRatio(double squared_distorted) const;
+  double nearInverseRatio(double squared_distorted) const {
+    if (!(squared_distorted < squared_reach_)) return inverseRatioBeyondReach(squared_distorted);
+    const double position = squared_distorted * nodes_per_squared_distorted_;
+    const auto i = static_cast<std::size_t>(position);
+    const double share = position - static_cast<double>(i);
+    return inverse_ratios_[i] + share * (inverse_ratios_[i + 1] - inverse_ratios_[i]);
+  }
 
   /// r with d(r) = distorted, to rounding; nothing beyond the range.
   std::optional<double> invert(double distorted) const;
 
  private:
+  double inverseRatioBeyondReach(double squared_distorted) const;
   double invertByBisection(double distorted) const;
   double findMaxRadius(double limit) const;
   void fillTable(double reach);

@@ -23,7 +23,8 @@ class RadtanDistortion {
   std::optional<Eigen::Vector2d> distort(const Eigen::Vector2d& point, Eigen::Matrix2d* J_point,
                                          Matrix25* J_coefficients) const;
 
-  /// Undistorted point of a distorted one, to rounding; nothing where there is none.
+  /// Undistorted point of a distorted one, to 1e-12 of its radius or better (1e-10 next to the
+  /// fold); nothing where there is none.
   std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted) const;
 
   const std::array<double, 5>& coefficients() const { return k_; }
