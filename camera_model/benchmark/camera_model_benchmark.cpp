@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "../test/example_cameras.h"
+#include "camera_model/testing/example_cameras.h"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "camera_model/calibration_drawing.h"
-#include "example_cameras.h"
+#include "camera_model/testing/example_cameras.h"
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
 

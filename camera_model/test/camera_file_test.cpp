@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "example_cameras.h"
+#include "camera_model/testing/example_cameras.h"
 #include "vins_core/input_error.h"
 #include "vins_core/text_file.h"
 

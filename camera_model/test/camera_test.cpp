@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "example_cameras.h"
+#include "camera_model/testing/example_cameras.h"
 #include "vins_core/input_error.h"
 #include "vins_core/testing/numeric_jacobian.h"
 

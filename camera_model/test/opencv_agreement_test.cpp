@@ -9,7 +9,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/ccalib/omnidir.hpp>
 
-#include "example_cameras.h"
+#include "camera_model/testing/example_cameras.h"
 
 namespace vins {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 
-#include "example_cameras.h"
+#include "camera_model/testing/example_cameras.h"
 
 namespace vins {
 namespace {

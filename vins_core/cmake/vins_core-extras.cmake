@@ -3,6 +3,11 @@
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release)
 endif()
+# Debian's pluginlib, behind rosbag, looks for Python 3 by itself; only catkin's sees ROS's modules.
+# Packages therefore name vins_core first among their catkin components.
+if(NOT Python3_EXECUTABLE AND PYTHON_EXECUTABLE)
+  set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
+endif()
 option(VINS_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 
 # vins_target_options(TARGET ...): C++17, the warnings, and floating point that does not depend on

@@ -1,0 +1,137 @@
+// Converts a recording in the ASL layout, in which EuRoC is distributed, to a ROS bag.
+
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <boost/program_options.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "vins_core/input_error.h"
+#include "vins_core/progress_bar.h"
+#include "vins_pipeline/asl_folder.h"
+#include "vins_pipeline/bag_writer.h"
+#include "vins_pipeline/message_schedule.h"
+
+namespace po = boost::program_options;
+
+namespace {
+
+/// The streams of a bag; at equal times their messages come in this order.
+enum Stream : std::size_t { kImu, kGroundTruth, kCamera0, kCamera1 };
+
+std::vector<vins::ScheduledMessage> scheduleOf(const vins::AslRecording& recording) {
+  std::vector<std::vector<vins::Stamp>> arrivals(4);
+  for (const auto& sample : recording.imu) arrivals[kImu].push_back(sample.stamp);
+  for (const auto& pose : recording.ground_truth.poses()) {
+    arrivals[kGroundTruth].push_back(pose.stamp);
+  }
+  for (std::size_t camera = 0; camera < recording.cameras.size(); ++camera) {
+    for (const auto& image : recording.cameras[camera]) {
+      arrivals[kCamera0 + camera].push_back(image.stamp);
+    }
+  }
+  return vins::inOrderOfArrival(arrivals);
+}
+
+cv::Mat readImage(const std::string& path) {
+  cv::Mat image = cv::imread(path, cv::IMREAD_GRAYSCALE);
+  if (image.empty()) throw vins::InputError(path + ": is no image that can be read");
+  return image;
+}
+
+void write(const vins::AslRecording& recording, const vins::ScheduledMessage& message,
+           vins::BagWriter* bag) {
+  if (message.stream == kImu) {
+    bag->writeImu(message.arrival, recording.imu[message.index]);
+  } else if (message.stream == kGroundTruth) {
+    const vins::StampedPose& pose = recording.ground_truth.poses()[message.index];
+    bag->writeGroundTruth(message.arrival, pose.stamp, pose.T_wb);
+  } else {
+    const std::size_t camera = message.stream - kCamera0;
+    const vins::ImageFile& image = recording.cameras[camera][message.index];
+    bag->writeImage(camera == 0 ? vins::topic::kCamera0 : vins::topic::kCamera1, message.arrival,
+                    image.stamp, readImage(image.path));
+  }
+}
+
+void describe(const vins::AslRecording& recording) {
+  std::cout << recording.folder << ": ";
+  for (std::size_t camera = 0; camera < recording.cameras.size(); ++camera) {
+    std::cout << recording.cameras[camera].size() << " images of cam" << camera << ", ";
+  }
+  std::cout << recording.imu.size() << " IMU samples, ";
+  if (recording.ground_truth.empty()) {
+    std::cout << "no ground truth\n";
+  } else {
+    std::cout << recording.ground_truth.poses().size() << " poses of "
+              << recording.ground_truth_source << "\n";
+  }
+  for (const std::string& path : recording.missing_images) {
+    std::cerr << "skipped: " << path << " is missing\n";
+  }
+}
+
+void convert(const std::string& folder, const std::string& bag_path, vins::MissingImages missing) {
+  const vins::AslRecording recording = vins::readAslFolder(folder, missing);
+  describe(recording);
+  const auto messages = scheduleOf(recording);
+  vins::BagWriter bag(bag_path);
+  auto bar = vins::ProgressBar::onStandardError("writing " + bag_path, messages.size());
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    write(recording, messages[i], &bag);
+    bar.update(i + 1);
+  }
+  bag.finish();
+  bar.finish();
+  const auto megabytes = static_cast<double>(std::filesystem::file_size(bag_path)) / 1e6;
+  std::cout << "written: " << bag_path << ", " << messages.size() << " messages, " << megabytes
+            << " MB\n";
+}
+
+po::options_description describeOptions() {
+  po::options_description options("Options");
+  options.add_options()("help", "print this text")  //
+      ("folder", po::value<std::string>()->required(),
+       "folder of the recording: its mav0, the one above, or the one above that")(
+          "bag", po::value<std::string>()->required(), "bag to write")(
+          "skip-missing-images", po::bool_switch(),
+          "leave out images that are listed but not there, instead of refusing");
+  return options;
+}
+
+/// True where only the help was asked for.
+bool printedHelp(const po::variables_map& values, const po::options_description& options) {
+  if (values.count("help") == 0) return false;
+  std::cout << "Converts a recording in the ASL layout (EuRoC as it is distributed) to a ROS bag\n"
+               "with the topics /cam0/image_raw, /cam1/image_raw, /imu0, /ground_truth/pose.\n"
+               "Usage: asl_to_bag FOLDER OUT.bag\n"
+               "Example: asl_to_bag MH_01_easy MH_01_easy.bag\n\n"
+            << options;
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const po::options_description options = describeOptions();
+    po::positional_options_description positional;
+    positional.add("folder", 1).add("bag", 1);
+    po::variables_map values;
+    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
+              values);
+    if (printedHelp(values, options)) return 0;
+    po::notify(values);
+    convert(values["folder"].as<std::string>(), values["bag"].as<std::string>(),
+            values["skip-missing-images"].as<bool>() ? vins::MissingImages::kSkip
+                                                     : vins::MissingImages::kRefuse);
+    return 0;
+  } catch (const po::error& error) {
+    std::cerr << "asl_to_bag: " << error.what() << "; see --help\n";
+  } catch (const std::exception& error) {
+    std::cerr << "asl_to_bag: " << error.what() << "\n";
+  }
+  return 1;
+}
