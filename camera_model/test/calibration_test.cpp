@@ -1,7 +1,6 @@
 #include "camera_model/calibration.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <random>
@@ -15,6 +14,7 @@
 #include "camera_model/testing/example_cameras.h"
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
+#include "vins_core/testing/shared_data.h"
 
 namespace vins {
 namespace {
@@ -255,23 +255,16 @@ TEST(Calibration, PicturesShowTheCorners) {
   EXPECT_GE(dots, 50);
 }
 
-/// The real photographs beside the checkout, or where VINS_SHARED_DATA says.
-std::filesystem::path chessboardFolder() {
-  const char* folder = std::getenv("VINS_SHARED_DATA");
-  return std::filesystem::path(folder != nullptr ? folder : "../../shared/data") / "chessboard";
-}
-
 class RealChessboard : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RealChessboard, FitsNoWorseThanOpencvOnTheSameCorners) {
-  if (!std::filesystem::is_directory(chessboardFolder())) {
-    GTEST_SKIP() << "no recorded chessboards in " << chessboardFolder() << "; set VINS_SHARED_DATA";
-  }
+  const std::string folder = testing::sharedData("chessboard");
+  VINS_SKIP_WITHOUT(folder);
   CalibrationOptions options;
   options.board = {9, 6, 25.0};
   options.reject_outliers = false;
   std::vector<CalibrationView> views;
-  for (const auto& entry : std::filesystem::directory_iterator(chessboardFolder())) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (name.rfind(GetParam(), 0) != 0) continue;
     const cv::Mat gray = cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE);
