@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <limits>
 #include <map>
 
 #include <geometry_msgs/PoseStamped.h>
@@ -11,42 +10,9 @@
 #include <sensor_msgs/Imu.h>
 
 #include "vins_core/input_error.h"
+#include "vins_msgs/conversions.h"
 
 namespace vins {
-namespace {
-
-constexpr Stamp kNanoseconds = 1000000000;
-
-ros::Time toRosTime(Stamp stamp) {
-  if (stamp < 1 || stamp / kNanoseconds > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError("stamp " + std::to_string(stamp) + " ns; allowed: from 1 ns to the year 2106");
-  }
-  return {static_cast<std::uint32_t>(stamp / kNanoseconds),
-          static_cast<std::uint32_t>(stamp % kNanoseconds)};
-}
-
-geometry_msgs::Vector3 toMessage(const Eigen::Vector3d& v) {
-  geometry_msgs::Vector3 message;
-  message.x = v.x();
-  message.y = v.y();
-  message.z = v.z();
-  return message;
-}
-
-geometry_msgs::Pose toMessage(const Pose& pose) {
-  geometry_msgs::Pose message;
-  message.position.x = pose.position.x();
-  message.position.y = pose.position.y();
-  message.position.z = pose.position.z();
-  message.orientation.x = pose.rotation.x();
-  message.orientation.y = pose.rotation.y();
-  message.orientation.z = pose.rotation.z();
-  message.orientation.w = pose.rotation.w();
-  return message;
-}
-
-}  // namespace
-
 /// The open bag, and how many messages each topic has.
 class BagWriter::Bag {
  public:
@@ -75,9 +41,9 @@ void BagWriter::write(const std::string& topic, Stamp recorded, Message* message
                       const std::string& frame) {
   try {
     message->header.seq = bag_->counts[topic]++;
-    message->header.stamp = toRosTime(stamp);
+    message->header.stamp = vins_msgs::toRosTime(stamp);
     message->header.frame_id = frame;
-    bag_->bag.write(topic, toRosTime(recorded), *message);
+    bag_->bag.write(topic, vins_msgs::toRosTime(recorded), *message);
   } catch (const rosbag::BagException& error) {
     throw InputError(path_ + ": cannot be written: " + error.what());
   } catch (const InputError& error) {
@@ -104,16 +70,13 @@ void BagWriter::writeImage(const std::string& topic, Stamp recorded, Stamp stamp
 }
 
 void BagWriter::writeImu(Stamp recorded, const ImuSample& sample) {
-  sensor_msgs::Imu message;
-  message.orientation_covariance[0] = -1.0;  // ROS's way to say that there is no orientation
-  message.angular_velocity = toMessage(sample.angular_velocity);
-  message.linear_acceleration = toMessage(sample.acceleration);
+  sensor_msgs::Imu message = vins_msgs::toMsg(sample);
   write(topic::kImu, recorded, &message, sample.stamp, "imu0");
 }
 
 void BagWriter::writeGroundTruth(Stamp recorded, Stamp stamp, const Pose& T_wb) {
   geometry_msgs::PoseStamped message;
-  message.pose = toMessage(T_wb);
+  message.pose = vins_msgs::toMsg(T_wb);
   write(topic::kGroundTruth, recorded, &message, stamp, "world");
 }
 
