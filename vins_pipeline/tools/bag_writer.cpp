@@ -13,6 +13,7 @@
 #include "vins_msgs/conversions.h"
 
 namespace vins {
+
 /// The open bag, and how many messages each topic has.
 class BagWriter::Bag {
  public:
