@@ -70,7 +70,9 @@ std::optional<Eigen::Vector3d> Mei::unproject(const Eigen::Vector2d& pixel) cons
   // The same fold as in project(), seen from the plane; the slack lets its very edge through.
   if (xi_ > 1.0 && squared_margin < kFoldMargin * kFoldMargin * (1.0 - 1e-9)) return std::nullopt;
   const double lift = (xi_ + std::sqrt(squared_margin)) / (1.0 + s);
-  return Eigen::Vector3d(lift * m->x(), lift * m->y(), lift - xi_).normalized();
+  // Of unit length up to rounding: one Newton step for 1 / norm replaces a root and a division.
+  const Eigen::Vector3d bearing(lift * m->x(), lift * m->y(), lift - xi_);
+  return (1.5 - 0.5 * bearing.squaredNorm()) * bearing;
 }
 
 CameraParameters Mei::parameters() const {
