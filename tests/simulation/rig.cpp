@@ -61,12 +61,13 @@ std::string matrixText(const std::string& key, const Eigen::MatrixXd& matrix) {
          "\n   cols: " + std::to_string(matrix.cols()) + "\n   dt: d\n   data: [" + data + "]\n";
 }
 
-/// Keys of VINS-Mono that have nothing to do with the rig, at the values of its EuRoC example.
+/// Keys of VINS-Mono that have nothing to do with the rig, at the values of its EuRoC example but
+/// for freq: every frame is used.
 constexpr char kTrackerAndSolver[] = R"(
 # Feature tracker
 max_cnt: 150
 min_dist: 30
-freq: 10
+freq: 0
 F_threshold: 1.0
 show_track: 1
 equalize: 1

@@ -43,13 +43,14 @@ void expectSame(const vins::ImuBiasEstimate& a, const vins::ImuBiasEstimate& b) 
 }
 
 void expectSame(const vins::FeatureObservation& a, const vins::FeatureObservation& b) {
-  const auto& [id, camera, track_length, pixel, bearing, bearing_velocity] = a;
+  const auto& [id, camera, track_length, pixel, bearing, bearing_velocity, resolution] = a;
   EXPECT_EQ(id, b.id);
   EXPECT_EQ(camera, b.camera);
   EXPECT_EQ(track_length, b.track_length);
   EXPECT_EQ(pixel, b.pixel);
   EXPECT_EQ(bearing, b.bearing);
   EXPECT_EQ(bearing_velocity, b.bearing_velocity);
+  EXPECT_EQ(resolution, b.angular_resolution);
 }
 
 void expectSame(const vins::KeyframePoint& a, const vins::KeyframePoint& b) {

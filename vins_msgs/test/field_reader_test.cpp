@@ -38,6 +38,8 @@ TEST(Refusals, FeatureFrame) {
               m.observations[2].bearing = {{0.0, 0.75, 1.0}};
             }),
             place + "bearing has length 1.25; allowed: 1 within 1e-06");
+  EXPECT_EQ(refusedFrame([](FeatureFrame& m) { m.observations[2].angular_resolution = 0.0; }),
+            place + "angular_resolution is 0; allowed: a finite number above 0");
   EXPECT_EQ(refusedFrame([](FeatureFrame& m) { m.observations[2].camera = 2; }),
             place + "camera is 2; allowed: 0 to 1");
   EXPECT_EQ(refusedFrame([](FeatureFrame& m) { m.observations[2].camera = -1; }),

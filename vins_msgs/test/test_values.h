@@ -42,9 +42,11 @@ class Random {
   }
 
   vins::ImuSample imuSample() { return {stamp(), vector(), vector()}; }
-  vins::ImuBiasEstimate imuBias() { return {stamp(), vector(), vector(), matrix<3>(), matrix<3>()}; }
+  vins::ImuBiasEstimate imuBias() {
+    return {stamp(), vector(), vector(), matrix<3>(), matrix<3>()};
+  }
   vins::FeatureObservation observation() {
-    return {id(), 1, count(), pixel(), bearing(), vector()};
+    return {id(), 1, count(), pixel(), bearing(), vector(), std::abs(number())};
   }
   vins::FeatureFrame featureFrame() {
     return {stamp(), sequence(), {observation(), observation(), observation()}};

@@ -17,6 +17,7 @@ struct FeatureObservation {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();             ///< as measured, distorted [px]
   Eigen::Vector3d bearing = Eigen::Vector3d::UnitZ();          ///< unit vector in the camera frame
   Eigen::Vector3d bearing_velocity = Eigen::Vector3d::Zero();  ///< [1/s]; zero if not known
+  double angular_resolution = 1.0 / 460.0;  ///< angle that one pixel spans there [rad/px]
 
   /// The velocity needs the image before: a new track has none.
   bool hasVelocity() const { return track_length > 1; }

@@ -139,6 +139,7 @@ inline FeatureObservation toMsg(const vins::FeatureObservation& observation) {
   copyTo(observation.pixel, message.pixel);
   copyTo(observation.bearing, message.bearing);
   copyTo(observation.bearing_velocity, message.bearing_velocity);
+  message.angular_resolution = observation.angular_resolution;
   return message;
 }
 
@@ -153,6 +154,8 @@ inline vins::FeatureObservation fromMsg(const FeatureObservation& message,
   observation.pixel = reader.vector<2>("pixel", message.pixel);
   observation.bearing = reader.bearing("bearing", message.bearing);
   observation.bearing_velocity = reader.vector<3>("bearing_velocity", message.bearing_velocity);
+  observation.angular_resolution =
+      reader.positive("angular_resolution", message.angular_resolution);
   return observation;
 }
 

@@ -72,6 +72,9 @@ class FieldReader {
   /// An integer between `lowest` and `highest`.
   int integer(const char* field, int value, int lowest, int highest) const;
 
+  /// A finite number above 0.
+  double positive(const char* field, double value) const;
+
   /// Throws: `found` is what is wrong with the field, `allowed` what would be right.
   [[noreturn]] void refuse(const char* field, const std::string& found,
                            const std::string& allowed) const;
@@ -138,6 +141,13 @@ inline int FieldReader::integer(const char* field, int value, int lowest, int hi
   if (value >= lowest && value <= highest) return value;
   refuse(field, "is " + std::to_string(value),
          std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
+inline double FieldReader::positive(const char* field, double value) const {
+  if (std::isfinite(value) && value > 0.0) return value;
+  std::ostringstream found;
+  found << "is " << value;
+  refuse(field, found.str(), "a finite number above 0");
 }
 
 template <typename Values>
