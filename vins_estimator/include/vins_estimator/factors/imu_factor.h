@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <ceres/sized_cost_function.h>
+
+#include "vins_estimator/inertial/nav_state.h"
+#include "vins_estimator/inertial/preintegration.h"
+
+namespace vins {
+
+using Matrix15x6d = Eigen::Matrix<double, 15, 6>;
+using Matrix15x9d = Eigen::Matrix<double, 15, 9>;
+
+/// Residual of two states i and j against the preintegrated IMU between them (VINS-Mono, equation
+/// 16): alpha, rotation, beta, accelerometer bias, gyroscope bias, not weighted.
+Vector15d imuResidual(const Preintegration& imu, const Eigen::Vector3d& g_w, const NavState& i,
+                      const NavState& j);
+
+/// Derivatives of imuResidual() by the error states of pose (position, rotation) and motion
+/// (velocity, accelerometer bias, gyroscope bias) at i and at j.
+struct ImuJacobians {
+  Matrix15x6d J_pose_i;
+  Matrix15x9d J_motion_i;
+  Matrix15x6d J_pose_j;
+  Matrix15x9d J_motion_j;
+};
+ImuJacobians imuJacobians(const Preintegration& imu, const Eigen::Vector3d& g_w, const NavState& i,
+                          const NavState& j);
+
+/// The weighted residual for Ceres. Parameter blocks: pose i (7), motion i (9), pose j, motion j,
+/// as in parameter_blocks.h. What it refers to must outlive it. Jacobians are taken at the states'
+/// first estimates where they have one.
+class ImuFactor : public ceres::SizedCostFunction<15, 7, 9, 7, 9> {
+ public:
+  ImuFactor(const Preintegration& imu, const Eigen::Vector3d& g_w, const WindowState& i,
+            const WindowState& j)
+      : imu_(imu), g_w_(g_w), i_(i), j_(j) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  const Preintegration& imu_;
+  Eigen::Vector3d g_w_;
+  const WindowState& i_;
+  const WindowState& j_;
+};
+
+}  // namespace vins

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "vins_core/imu.h"
+#include "vins_estimator/inertial/nav_state.h"
+
+namespace vins {
+
+/// What the IMU says between two times i and j, free of the state at i: the increments of position
+/// alpha, rotation gamma and velocity beta, in the body frame at i. Midpoint integration; error
+/// states in the order of ErrorState. Equations: T. Qin, P. Li, S. Shen, "VINS-Mono: a robust and
+/// versatile monocular visual-inertial state estimator", T-RO 2018, section IV-B; C. Forster et
+/// al., "On-manifold preintegration for real-time visual-inertial odometry", T-RO 2017.
+class Preintegration {
+ public:
+  /// Integrates with these biases [m/s^2], [rad/s] until reintegrate() is given others.
+  Preintegration(const ImuNoise& noise, const Eigen::Vector3d& accelerometer_bias,
+                 const Eigen::Vector3d& gyroscope_bias);
+
+  /// Carries on over neighbouring samples, which have rising stamps; the first must be the last one
+  /// of the samples before (same stamp), or the very first. `noise_scale`: the white noise of this
+  /// piece is this many times the usual (an interval that lacks samples).
+  void integrate(const std::vector<ImuSample>& samples, double noise_scale = 1.0);
+
+  /// Carries on over the samples of the interval that follows.
+  void append(const Preintegration& next);
+
+  /// Integrates all samples anew, with other biases.
+  void reintegrate(const Eigen::Vector3d& accelerometer_bias,
+                   const Eigen::Vector3d& gyroscope_bias);
+
+  /// The first-order correction for these biases is no longer good: their distance from the biases
+  /// integrated with, times the interval, would bend it by more than a small part of its noise.
+  bool needsReintegration(const Eigen::Vector3d& accelerometer_bias,
+                          const Eigen::Vector3d& gyroscope_bias) const;
+
+  double duration() const { return duration_; }  ///< [s]
+  bool empty() const { return pieces_.empty(); }
+  const Eigen::Vector3d& alpha() const { return alpha_; }     ///< [m]
+  const Eigen::Quaterniond& gamma() const { return gamma_; }  ///< R_bi_bj
+  const Eigen::Vector3d& beta() const { return beta_; }       ///< [m/s]
+  const Eigen::Vector3d& accelerometerBias() const { return accelerometer_bias_; }
+  const Eigen::Vector3d& gyroscopeBias() const { return gyroscope_bias_; }
+  const ImuNoise& noise() const { return noise_; }
+
+  /// d(alpha, theta, beta, ba, bg) at j by the same at i: 15x15. Its blocks right of kVelocity are
+  /// the derivatives by the biases.
+  const Matrix15d& jacobian() const { return jacobian_; }
+  /// Covariance of the increments' errors (alpha, theta, beta, ba, bg).
+  const Matrix15d& covariance() const { return covariance_; }
+  /// Upper triangular S with S^T S = covariance()^-1. Computed when asked for the first time.
+  const Matrix15d& sqrtInformation() const;
+
+  struct Increments {
+    Eigen::Vector3d alpha;
+    Eigen::Quaterniond gamma;
+    Eigen::Vector3d beta;
+  };
+  /// Corrected to first order for these biases.
+  Increments corrected(const Eigen::Vector3d& accelerometer_bias,
+                       const Eigen::Vector3d& gyroscope_bias) const;
+
+  /// The state at j of a body that stands at `state` at i. `g_w`: gravity, (0, 0, -g).
+  NavState predict(const NavState& state, const Eigen::Vector3d& g_w) const;
+
+ private:
+  /// Samples in a row, with their noise.
+  struct Piece {
+    std::vector<ImuSample> samples;
+    double noise_scale;
+  };
+  void integratePiece(const Piece& piece);
+  void step(const ImuSample& from, const ImuSample& to, double noise_scale);
+
+  ImuNoise noise_;
+  Eigen::Vector3d accelerometer_bias_;
+  Eigen::Vector3d gyroscope_bias_;
+  std::vector<Piece> pieces_;
+
+  double duration_ = 0.0;
+  Eigen::Vector3d alpha_ = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond gamma_ = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d beta_ = Eigen::Vector3d::Zero();
+  Matrix15d jacobian_ = Matrix15d::Identity();
+  Matrix15d covariance_ = Matrix15d::Zero();
+  mutable Matrix15d sqrt_information_;
+  mutable bool sqrt_information_known_ = false;
+};
+
+}  // namespace vins

@@ -1,0 +1,171 @@
+#include "vins_estimator/inertial/preintegration.h"
+
+#include <Eigen/Cholesky>
+
+#include "vins_core/so3.h"
+
+namespace vins {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// A reading with the biases taken off.
+struct Unbiased {
+  Vector3d a;
+  Vector3d w;
+};
+
+/// One midpoint step of the increments and what its derivatives need.
+struct Midpoint {
+  double dt;
+  Matrix3d R_from;  ///< gamma before the step
+  Matrix3d R_to;    ///< and after it
+  Matrix3d turn;    ///< rotation of the step
+  Matrix3d J_r;     ///< right Jacobian of the step's rotation vector
+  Vector3d a_from;
+  Vector3d a_to;
+};
+
+/// d(error after) / d(error before), first order in the errors and exact in the step. The biases
+/// are taken as constant over the step.
+Matrix15d transition(const Midpoint& m) {
+  const double half = 0.5 * m.dt;
+  // The velocity's error by the rotation's: the second reading is turned by the new rotation.
+  const Matrix3d J_v_theta =
+      -half * (m.R_from * so3::hat(m.a_from) + m.R_to * so3::hat(m.a_to) * m.turn.transpose());
+  const Matrix3d J_v_bg = half * m.R_to * so3::hat(m.a_to) * m.J_r * m.dt;
+  const Matrix3d J_v_ba = -half * (m.R_from + m.R_to);
+  Matrix15d F = Matrix15d::Identity();
+  F.block<3, 3>(kPosition, kRotation) = half * J_v_theta;
+  F.block<3, 3>(kPosition, kVelocity) = m.dt * Matrix3d::Identity();
+  F.block<3, 3>(kPosition, kAccBias) = half * J_v_ba;
+  F.block<3, 3>(kPosition, kGyrBias) = half * J_v_bg;
+  F.block<3, 3>(kRotation, kRotation) = m.turn.transpose();
+  F.block<3, 3>(kRotation, kGyrBias) = -m.J_r * m.dt;
+  F.block<3, 3>(kVelocity, kRotation) = J_v_theta;
+  F.block<3, 3>(kVelocity, kAccBias) = J_v_ba;
+  F.block<3, 3>(kVelocity, kGyrBias) = J_v_bg;
+  return F;
+}
+
+/// What the noise of one step adds. White noise of density s acts as one error of variance
+/// s^2 / dt, constant over the step: the sum over many steps then has the variance s^2 t that the
+/// density says. (Two half-errors, one a reading, would be counted as independent in neighbouring
+/// steps, which share a reading, and halve it.)
+Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise, const Matrix15d& F, double scale) {
+  const double acc = scale * scale * noise.accelerometer_noise * noise.accelerometer_noise / m.dt;
+  const double gyr = scale * scale * noise.gyroscope_noise * noise.gyroscope_noise / m.dt;
+  // An error of a reading acts as the opposite error of the bias does.
+  const Eigen::Matrix<double, 9, 3> G_acc = F.block<9, 3>(0, kAccBias);
+  const Eigen::Matrix<double, 9, 3> G_gyr = F.block<9, 3>(0, kGyrBias);
+  Matrix15d Q = Matrix15d::Zero();
+  Q.topLeftCorner<9, 9>() = acc * G_acc * G_acc.transpose() + gyr * G_gyr * G_gyr.transpose();
+  const double acc_walk = noise.accelerometer_walk * noise.accelerometer_walk * m.dt;
+  const double gyr_walk = noise.gyroscope_walk * noise.gyroscope_walk * m.dt;
+  Q.diagonal().segment<3>(kAccBias).array() += acc_walk;
+  Q.diagonal().segment<3>(kGyrBias).array() += gyr_walk;
+  return Q;
+}
+
+}  // namespace
+
+Preintegration::Preintegration(const ImuNoise& noise, const Vector3d& accelerometer_bias,
+                               const Vector3d& gyroscope_bias)
+    : noise_(noise), accelerometer_bias_(accelerometer_bias), gyroscope_bias_(gyroscope_bias) {}
+
+void Preintegration::integrate(const std::vector<ImuSample>& samples, double noise_scale) {
+  if (samples.size() < 2) return;
+  pieces_.push_back({samples, noise_scale});
+  integratePiece(pieces_.back());
+}
+
+void Preintegration::append(const Preintegration& next) {
+  for (const Piece& piece : next.pieces_) integrate(piece.samples, piece.noise_scale);
+}
+
+void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
+                                 const Vector3d& gyroscope_bias) {
+  accelerometer_bias_ = accelerometer_bias;
+  gyroscope_bias_ = gyroscope_bias;
+  duration_ = 0.0;
+  alpha_.setZero();
+  gamma_.setIdentity();
+  beta_.setZero();
+  jacobian_.setIdentity();
+  covariance_.setZero();
+  sqrt_information_known_ = false;
+  for (const Piece& piece : pieces_) integratePiece(piece);
+}
+
+void Preintegration::integratePiece(const Piece& piece) {
+  for (std::size_t i = 1; i < piece.samples.size(); ++i) {
+    step(piece.samples[i - 1], piece.samples[i], piece.noise_scale);
+  }
+  sqrt_information_known_ = false;
+}
+
+void Preintegration::step(const ImuSample& from, const ImuSample& to, double noise_scale) {
+  const double dt = toSeconds(to.stamp - from.stamp);
+  if (dt <= 0.0) return;
+  const Vector3d phi = dt * (0.5 * (from.angular_velocity + to.angular_velocity) - gyroscope_bias_);
+  const Eigen::Quaterniond turn = so3::exp(phi);
+  const Eigen::Quaterniond gamma = (gamma_ * turn).normalized();
+  const Midpoint m{dt,
+                   gamma_.toRotationMatrix(),
+                   gamma.toRotationMatrix(),
+                   turn.toRotationMatrix(),
+                   so3::rightJacobian(phi),
+                   from.acceleration - accelerometer_bias_,
+                   to.acceleration - accelerometer_bias_};
+  const Vector3d a = 0.5 * (m.R_from * m.a_from + m.R_to * m.a_to);
+  alpha_ += dt * beta_ + 0.5 * dt * dt * a;
+  beta_ += dt * a;
+  gamma_ = gamma;
+  duration_ += dt;
+  const Matrix15d F = transition(m);
+  jacobian_ = F * jacobian_;
+  covariance_ = F * covariance_ * F.transpose() + stepNoise(m, noise_, F, noise_scale);
+}
+
+bool Preintegration::needsReintegration(const Vector3d& accelerometer_bias,
+                                        const Vector3d& gyroscope_bias) const {
+  // What first order leaves out is of the size of the angle that the gyroscope bias turned by,
+  // squared, and of its product with the velocity that the accelerometer bias made.
+  constexpr double kAngle = 2e-3;  // [rad]: squared, 4e-6 rad, far below any gyroscope's noise
+  constexpr double kSpeed = 0.05;  // [m/s]: times such an angle, 0.1 mm/s
+  return (gyroscope_bias - gyroscope_bias_).norm() * duration_ > kAngle ||
+         (accelerometer_bias - accelerometer_bias_).norm() * duration_ > kSpeed;
+}
+
+const Matrix15d& Preintegration::sqrtInformation() const {
+  if (!sqrt_information_known_) {
+    // S = L^T with covariance^-1 = L L^T.
+    const Matrix15d information = covariance_.llt().solve(Matrix15d::Identity());
+    sqrt_information_ = information.llt().matrixU();
+    sqrt_information_known_ = true;
+  }
+  return sqrt_information_;
+}
+
+Preintegration::Increments Preintegration::corrected(const Vector3d& accelerometer_bias,
+                                                     const Vector3d& gyroscope_bias) const {
+  const Vector3d d_ba = accelerometer_bias - accelerometer_bias_;
+  const Vector3d d_bg = gyroscope_bias - gyroscope_bias_;
+  const auto J = [this](int row, int column) { return jacobian_.block<3, 3>(row, column); };
+  return {alpha_ + J(kPosition, kAccBias) * d_ba + J(kPosition, kGyrBias) * d_bg,
+          gamma_ * so3::exp(J(kRotation, kGyrBias) * d_bg),
+          beta_ + J(kVelocity, kAccBias) * d_ba + J(kVelocity, kGyrBias) * d_bg};
+}
+
+NavState Preintegration::predict(const NavState& state, const Vector3d& g_w) const {
+  const Increments d = corrected(state.accelerometer_bias, state.gyroscope_bias);
+  const double t = duration_;
+  NavState next = state;
+  next.T_wb.position += t * state.v_w + 0.5 * t * t * g_w + state.T_wb.rotation * d.alpha;
+  next.T_wb.rotation = (state.T_wb.rotation * d.gamma).normalized();
+  next.v_w += t * g_w + state.T_wb.rotation * d.beta;
+  return next;
+}
+
+}  // namespace vins
