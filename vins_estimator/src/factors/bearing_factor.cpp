@@ -105,21 +105,41 @@ Eigen::Vector2d bearingResidual(const BearingMeasurement& measured, const Landma
   return residual;
 }
 
+Eigen::Vector2d firstEstimatesResidual(const BearingMeasurement& measured,
+                                       const LandmarkAnchor& anchor, const Pose& T_bc,
+                                       const WindowState& host, const Pose& T_wb_host,
+                                       const WindowState& target, const Pose& T_wb_target,
+                                       const LandmarkParameters& landmark,
+                                       BearingJacobians* jacobians) {
+  const bool at_present = !host.hasPoseForJacobians() && !target.hasPoseForJacobians();
+  const Eigen::Vector2d residual = bearingResidual(measured, anchor, T_bc, T_wb_host, T_wb_target,
+                                                   landmark, at_present ? jacobians : nullptr);
+  if (!at_present && jacobians != nullptr) {
+    bearingResidual(measured, anchor, T_bc, host.poseForJacobians(T_wb_host),
+                    target.poseForJacobians(T_wb_target), landmark, jacobians);
+  }
+  return residual;
+}
+
+Eigen::Vector2d hostResidual(const BearingMeasurement& measured, const LandmarkAnchor& anchor,
+                             const LandmarkParameters& landmark, Matrix23d* J_landmark) {
+  Matrix23d J_h;
+  const Eigen::Vector2d residual =
+      directionResidual(measured, anchoredDirection(anchor, landmark), &J_h);
+  if (J_landmark != nullptr) {
+    J_landmark->leftCols<2>() = J_h * anchor.basis;
+    J_landmark->col(2).setZero();
+  }
+  return residual;
+}
+
 bool BearingFactor::Evaluate(double const* const* parameters, double* residuals,
                              double** jacobians) const {
-  const Pose T_wh = toPose(parameters[0]);
-  const Pose T_wt = toPose(parameters[1]);
-  const LandmarkParameters landmark(parameters[2]);
-  const bool first_estimates = host_.isPoseFixed() || target_.isPoseFixed();
   BearingJacobians J;
-  Eigen::Map<Eigen::Vector2d>{residuals} =
-      bearingResidual(measured_, anchor_, T_bc_, T_wh, T_wt, landmark,
-                      jacobians != nullptr && !first_estimates ? &J : nullptr);
+  Eigen::Map<Eigen::Vector2d>{residuals} = firstEstimatesResidual(
+      measured_, anchor_, T_bc_, host_, toPose(parameters[0]), target_, toPose(parameters[1]),
+      LandmarkParameters(parameters[2]), jacobians != nullptr ? &J : nullptr);
   if (jacobians == nullptr) return true;
-  if (first_estimates) {
-    bearingResidual(measured_, anchor_, T_bc_, host_.poseForJacobians(T_wh),
-                    target_.poseForJacobians(T_wt), landmark, &J);
-  }
   if (jacobians[0] != nullptr) writePoseJacobian(J.J_host, jacobians[0]);
   if (jacobians[1] != nullptr) writePoseJacobian(J.J_target, jacobians[1]);
   if (jacobians[2] != nullptr) {
@@ -130,14 +150,12 @@ bool BearingFactor::Evaluate(double const* const* parameters, double* residuals,
 
 bool HostBearingFactor::Evaluate(double const* const* parameters, double* residuals,
                                  double** jacobians) const {
-  const LandmarkParameters landmark(parameters[0]);
-  const Vector3d direction = anchoredDirection(anchor_, landmark);
-  Matrix23d J_h;
-  Eigen::Map<Eigen::Vector2d>{residuals} = directionResidual(measured_, direction, &J_h);
-  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-  Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>> J(jacobians[0]);
-  J.leftCols<2>() = J_h * anchor_.basis;
-  J.col(2).setZero();
+  Matrix23d J;
+  Eigen::Map<Eigen::Vector2d>{residuals} =
+      hostResidual(measured_, anchor_, LandmarkParameters(parameters[0]), &J);
+  if (jacobians != nullptr && jacobians[0] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>>{jacobians[0]} = J;
+  }
   return true;
 }
 

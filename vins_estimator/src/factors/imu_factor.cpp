@@ -42,7 +42,7 @@ void writeJacobian(const Matrix15d& weight, const Eigen::Matrix<double, 15, n>& 
   constexpr int kColumns = n == 6 ? 7 : n;
   Eigen::Map<Eigen::Matrix<double, 15, kColumns, Eigen::RowMajor>> out(jacobian);
   if (kColumns != n) out.template rightCols<1>().setZero();
-  out.template leftCols<n>().noalias() = weight.template triangularView<Eigen::Upper>() * J;
+  out.template leftCols<n>().noalias() = weight * J;
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals,
   const NavState j = toNavState(parameters[2], parameters[3]);
   const Matrix15d& weight = imu_.sqrtInformation();
   Eigen::Map<Vector15d>(residuals).noalias() =
-      weight.triangularView<Eigen::Upper>() * imuResidual(imu_, g_w_, i, j);
+      weight * imuResidual(imu_, g_w_, i, j);
   if (jacobians == nullptr) return true;
   const ImuJacobians J = imuJacobians(imu_, g_w_, linearization(i_, i), linearization(j_, j));
   if (jacobians[0] != nullptr) writeJacobian<6>(weight, J.J_pose_i, jacobians[0]);

@@ -49,6 +49,20 @@ Eigen::Vector2d bearingResidual(const BearingMeasurement& measured, const Landma
                                 const Pose& T_bc, const Pose& T_wb_host, const Pose& T_wb_target,
                                 const LandmarkParameters& landmark, BearingJacobians* jacobians);
 
+/// bearingResidual() at the present poses, its Jacobians at the first estimates of those that have
+/// one.
+Eigen::Vector2d firstEstimatesResidual(const BearingMeasurement& measured,
+                                       const LandmarkAnchor& anchor, const Pose& T_bc,
+                                       const WindowState& host, const Pose& T_wb_host,
+                                       const WindowState& target, const Pose& T_wb_target,
+                                       const LandmarkParameters& landmark,
+                                       BearingJacobians* jacobians);
+
+/// Weighted residual of the host's own measurement, and its derivative by the landmark.
+Eigen::Vector2d hostResidual(const BearingMeasurement& measured, const LandmarkAnchor& anchor,
+                             const LandmarkParameters& landmark,
+                             Eigen::Matrix<double, 2, 3>* J_landmark);
+
 /// bearingResidual() for Ceres, the extrinsic being constant. Parameter blocks: pose of the host
 /// (7), pose of the target (7), landmark (3). What it refers to must outlive it. Jacobians by the
 /// poses are taken at their first estimates where they have one.

@@ -55,13 +55,18 @@ class WindowState {
   void fixPose();
   void fixMotion();
 
+  /// From now on Jacobians are taken at present values, as VINS-Mono does: to study what that does.
+  void ignoreFirstEstimates() { ignore_first_estimates_ = true; }
+  /// Jacobians by the pose are taken elsewhere than at its present value.
+  bool hasPoseForJacobians() const { return pose_fixed_ && !ignore_first_estimates_; }
+
   /// Where Jacobians by the pose are taken: the first estimate, or else `current`.
   const Pose& poseForJacobians(const Pose& current) const {
-    return pose_fixed_ ? first_estimate_.T_wb : current;
+    return hasPoseForJacobians() ? first_estimate_.T_wb : current;
   }
   /// Where Jacobians by velocity and biases are taken (the pose in it is of no meaning).
   const NavState& motionForJacobians(const NavState& current) const {
-    return motion_fixed_ ? first_estimate_ : current;
+    return motion_fixed_ && !ignore_first_estimates_ ? first_estimate_ : current;
   }
   /// What the prior's differences are taken from.
   const NavState& firstEstimate() const { return first_estimate_; }
@@ -71,6 +76,7 @@ class WindowState {
   NavState first_estimate_;
   bool pose_fixed_ = false;
   bool motion_fixed_ = false;
+  bool ignore_first_estimates_ = false;
 };
 
 }  // namespace vins

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "vins_estimator/visual/landmarks.h"
+
+namespace vins {
+
+/// How far two frames are apart for the camera.
+struct FrameParallax {
+  int shared = 0;       ///< tracks seen in both
+  double parallax = 0;  ///< mean shift of the shared tracks, the rotation taken out [px]
+};
+
+/// `R_ba`: rotates bearings of frame a's camera to frame b's (from the gyroscope, which is why a
+/// turning camera makes no keyframes; VINS-Mono, section IV-A).
+FrameParallax parallaxBetween(const Landmarks& landmarks, FrameId a, FrameId b,
+                              const Eigen::Quaterniond& R_ba);
+
+/// When a frame is kept.
+struct KeyframeChoiceOptions {
+  double min_parallax = 10.0;     ///< against the last keyframe [px]
+  double min_shared_ratio = 0.5;  ///< of the frame's tracks, seen in the last keyframe, too
+  int min_shared = 20;            ///< tracks
+  double max_interval = 2.0;      ///< since the last keyframe [s]
+};
+
+/// The frame is worth keeping: `tracks` features, `seconds` after the last keyframe.
+bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& against_last, int tracks,
+                double seconds);
+
+}  // namespace vins

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "vins_estimator/window/sliding_window.h"
+
+namespace vins {
+
+/// Options of a window's solution.
+struct WindowSolverOptions {
+  int max_num_iterations = 8;
+  double max_solver_time = 0.0;      ///< [s]; 0: no bound
+  double function_tolerance = 1e-4;  ///< a step that changes the cost by a smaller part is the last
+  double huber = 1.5;  ///< where bearings' loss turns from square to linear [deviations]
+};
+
+/// How a solution went.
+struct SolveSummary {
+  bool usable = false;  ///< false: nothing has been changed
+  bool timed_out = false;
+  int iterations = 0;
+  int landmarks = 0;
+  int observations = 0;
+  double cost_initial = 0.0;
+  double cost_final = 0.0;
+};
+
+/// Moves the states and landmarks of the window to the least cost of prior, IMU and bearings
+/// (VINS-Mono, equation 14), by Ceres: Levenberg-Marquardt, the landmarks eliminated first.
+SolveSummary solveWindow(const WindowSolverOptions& options, SlidingWindow* window);
+
+}  // namespace vins

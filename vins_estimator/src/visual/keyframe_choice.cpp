@@ -1,0 +1,39 @@
+#include "vins_estimator/visual/keyframe_choice.h"
+
+#include <algorithm>
+
+namespace vins {
+namespace {
+
+const TrackObservation* observationIn(const Landmark& track, FrameId frame) {
+  for (const TrackObservation& observation : track.observations) {
+    if (observation.frame == frame) return &observation;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+FrameParallax parallaxBetween(const Landmarks& landmarks, FrameId a, FrameId b,
+                              const Eigen::Quaterniond& R_ba) {
+  FrameParallax result;
+  for (const auto& [id, track] : landmarks.tracks()) {
+    const TrackObservation* in_a = observationIn(track, a);
+    const TrackObservation* in_b = observationIn(track, b);
+    if (in_a == nullptr || in_b == nullptr) continue;
+    const Eigen::Vector3d shift = R_ba * in_a->measured.bearing - in_b->measured.bearing;
+    result.parallax += shift.norm() / in_b->angular_resolution;
+    ++result.shared;
+  }
+  if (result.shared > 0) result.parallax /= result.shared;
+  return result;
+}
+
+bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& against_last, int tracks,
+                double seconds) {
+  const double min_shared = std::max<double>(options.min_shared, options.min_shared_ratio * tracks);
+  return against_last.shared < min_shared || against_last.parallax >= options.min_parallax ||
+         seconds >= options.max_interval;
+}
+
+}  // namespace vins

@@ -1,0 +1,35 @@
+#include "vins_estimator/window/sliding_window.h"
+
+#include <algorithm>
+
+namespace vins {
+
+std::size_t SlidingWindow::indexOf(FrameId id) const {
+  const auto it =
+      std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.id == id; });
+  return static_cast<std::size_t>(it - frames.begin());
+}
+
+CameraPoses SlidingWindow::cameras() const {
+  CameraPoses cameras;
+  for (const WindowFrame& frame : frames) {
+    cameras.emplace_hint(cameras.end(), frame.id, frame.state.value().T_wb * T_bc);
+  }
+  return cameras;
+}
+
+void dropFrame(SlidingWindow* window, std::size_t index) {
+  auto& frames = window->frames;
+  window->landmarks.removeFrame(frames[index].id, window->cameras());
+  if (index + 1 < frames.size()) {
+    Preintegration joined = std::move(frames[index].imu);
+    joined.append(frames[index + 1].imu);
+    frames[index + 1].imu = std::move(joined);
+  }
+  frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(index));
+  for (Prior::Part& part : window->prior.parts) {
+    if (part.frame > index) --part.frame;
+  }
+}
+
+}  // namespace vins
