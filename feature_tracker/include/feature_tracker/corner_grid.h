@@ -1,0 +1,89 @@
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "camera_model/camera.h"
+
+namespace vins {
+
+/// What CornerGrid looks for.
+struct CornerGridOptions {
+  int max_corners = 150;       ///< corners that an image may have in all
+  double min_distance = 30.0;  ///< between any two of them [px]
+  int border = 8;              ///< no corner is nearer to the image's edge [px]
+  double quality = 2.5;        ///< smallest score [grey values/px]
+};
+
+/// A corner of one image.
+struct Corner {
+  cv::Point2f pixel;   ///< sub-pixel: the top of a parabola through the scores about the best pixel
+  float score = 0.0F;  ///< see CornerGrid
+};
+
+/// Finds corners where an image lacks them. The image is divided into cells, about as many as
+/// corners are wanted. Only cells without a corner are searched, and a few of those with one while
+/// corners are still missing: other ones at each call, so that all get their turn.
+///
+/// A pixel's score is the root mean square gradient [grey values/px] in its weakest direction over
+/// 7x7 pixels: the root of the smaller eigenvalue of the structure tensor (J. Shi, C. Tomasi, "Good
+/// features to track", CVPR 1994).
+class CornerGrid {
+ public:
+  /// `mask` is CV_8UC1 of the image's size, zero where no corner may be; or empty.
+  CornerGrid(ImageSize size, const CornerGridOptions& options, cv::Mat mask);
+
+  /// New corners, best first, of the image with these gradients: CV_16SC2 of Scharr's filter (32
+  /// times the grey values per pixel), as cv::buildOpticalFlowPyramid() makes them. With `occupied`
+  /// they are at most max_corners.
+  /// None is nearer than min_distance to a place in `shunned`, either.
+  std::vector<Corner> detect(const cv::Mat& gradients, const std::vector<cv::Point2f>& occupied,
+                             const std::vector<cv::Point2f>& shunned = {});
+
+  /// A corner may be at this pixel: neither masked nor too near to the edge.
+  bool allows(const cv::Point2f& pixel) const;
+
+ private:
+  struct Cell {
+    cv::Rect area;
+    int corners = 0;
+  };
+
+  /// Which corners are near a pixel, by buckets as wide as the smallest distance.
+  class Neighbourhood {
+   public:
+    Neighbourhood(ImageSize size, double min_distance);
+    void clear();
+    void add(const cv::Point2f& pixel);
+    bool isFree(const cv::Point2f& pixel) const;
+
+   private:
+    cv::Point bucketOf(const cv::Point2f& pixel) const;
+
+    double min_distance_;
+    int columns_, rows_;
+    std::vector<std::vector<cv::Point2f>> buckets_;
+  };
+
+  void countCorners(const std::vector<cv::Point2f>& occupied);
+  std::vector<int> cellsToSearch(int missing);
+  void computeScores(const cv::Mat& gradients, const cv::Rect& area);
+  void searchCell(const cv::Mat& gradients, const cv::Rect& area, std::vector<Corner>* corners);
+  Corner cornerAt(const cv::Rect& area, int row, int column) const;
+
+  ImageSize size_;
+  CornerGridOptions options_;
+  cv::Mat mask_;
+  int columns_ = 1;
+  std::vector<Cell> cells_;
+  std::size_t next_cell_ = 0;
+  Neighbourhood neighbourhood_;
+  // Kept from call to call, so that nothing is allocated for an image.
+  cv::Mat1f products_;  ///< three rows for each row of gradients
+  cv::Mat1f columns_sums_;
+  cv::Mat1f scores_;
+  std::vector<Corner> found_in_cell_;
+};
+
+}  // namespace vins

@@ -1,0 +1,217 @@
+#include "feature_tracker_ros.h"
+
+#include <chrono>
+#include <sstream>
+
+#include <cv_bridge/cv_bridge.h>
+#include <opencv2/imgproc.hpp>
+#include <std_msgs/Bool.h>
+
+#include "feature_tracker/mask_file.h"
+#include "feature_tracker/track_drawing.h"
+#include "vins_core/input_error.h"
+#include "vins_msgs/conversions.h"
+
+namespace vins {
+namespace {
+
+constexpr int kImageQueue = 10;
+constexpr int kImuQueue = 2000;
+constexpr double kSmoothing = 0.05;  // weight of the latest image in the mean time
+
+}  // namespace
+
+FeatureTrackerRos::FeatureTrackerRos(const ros::NodeHandle& handle,
+                                     const ros::NodeHandle& private_handle)
+    : handle_(handle),
+      private_handle_(private_handle),
+      transport_(handle),
+      private_transport_(private_handle),
+      updater_(handle, private_handle) {
+  // The tracker is fast enough alone, and the estimator needs the other cores.
+  cv::setNumThreads(1);
+  readConfiguration();
+  advertise();
+  worker_ = std::thread([this] { work(); });
+  subscribe();
+}
+
+FeatureTrackerRos::~FeatureTrackerRos() {
+  queue_->close();
+  worker_.join();
+}
+
+void FeatureTrackerRos::readConfiguration() {
+  std::string path;
+  if (!private_handle_.getParam("config_file", path) || path.empty()) {
+    throw InputError("parameter '" + private_handle_.resolveName("config_file") +
+                     "' is missing; needed: path of the rig's YAML file");
+  }
+  const Parameters parameters = Parameters::load(path);
+  rig_ = readRigConfiguration(parameters);
+  options_ = readFeatureTrackerOptions(parameters);
+  const cv::Mat mask = readMaskFile(options_.mask_file, rig_.cameras.front()->imageSize());
+  tracker_ = std::make_unique<FeatureTracker>(rig_.cameras, rig_.T_bc, options_, mask);
+  const bool uses_imu = rig_.rotation_known && !rig_.imu_topic.empty();
+  queue_ = std::make_unique<InputQueue>(rig_.cameras.size() == 2, uses_imu);
+  std::ostringstream text;
+  text << options_;
+  ROS_INFO_STREAM("feature tracker, from " << path << ":\n" << text.str());
+  if (!uses_imu) ROS_WARN("no imu_topic or no extrinsic rotation: tracks are predicted without it");
+}
+
+void FeatureTrackerRos::advertise() {
+  feature_publisher_ = private_handle_.advertise<vins_msgs::FeatureFrame>("feature", 100);
+  restart_publisher_ = private_handle_.advertise<std_msgs::Bool>("restart", 100);
+  picture_publisher_ = private_transport_.advertise("feature_img", 2);
+  updater_.setHardwareID("none");
+  updater_.add("feature tracker", this, &FeatureTrackerRos::diagnose);
+  diagnostic_timer_ = handle_.createTimer(ros::Duration(0.5),
+                                          [this](const ros::TimerEvent&) { updater_.update(); });
+}
+
+void FeatureTrackerRos::subscribe() {
+  subscribeCamera(0, rig_.image_topic);
+  if (rig_.cameras.size() == 2) subscribeCamera(1, rig_.second_image_topic);
+  if (!rig_.rotation_known || rig_.imu_topic.empty()) return;
+  const boost::function<void(const sensor_msgs::ImuConstPtr&)> take =
+      [this](const sensor_msgs::ImuConstPtr& message) {
+        queue_->addImu(vins_msgs::fromMsg(*message));
+      };
+  subscribers_.push_back(handle_.subscribe<sensor_msgs::Imu>(
+      rig_.imu_topic, kImuQueue, take, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+}
+
+void FeatureTrackerRos::subscribeCamera(int camera, const std::string& topic) {
+  const std::string transport = private_handle_.param("image_transport", std::string("raw"));
+  if (transport == "compressed") {
+    // Decoded here: the transport's plugin is not to be had on every system.
+    const boost::function<void(const sensor_msgs::CompressedImageConstPtr&)> take =
+        [this, camera](const sensor_msgs::CompressedImageConstPtr& message) {
+          QueuedImage image;
+          image.stamp = vins_msgs::toStamp(message->header.stamp);
+          image.compressed = message;
+          queue_->addImage(camera, std::move(image));
+        };
+    subscribers_.push_back(
+        handle_.subscribe<sensor_msgs::CompressedImage>(topic + "/compressed", kImageQueue, take));
+    return;
+  }
+  const auto take = [this, camera](const sensor_msgs::ImageConstPtr& message) {
+    QueuedImage image;
+    image.stamp = vins_msgs::toStamp(message->header.stamp);
+    image.raw = message;
+    queue_->addImage(camera, std::move(image));
+  };
+  try {
+    image_subscribers_.push_back(transport_.subscribe(topic, kImageQueue, take, ros::VoidPtr(),
+                                                      image_transport::TransportHints(transport)));
+  } catch (const image_transport::TransportLoadException& error) {
+    throw InputError("parameter image_transport is '" + transport + "': " + error.what());
+  }
+}
+
+void FeatureTrackerRos::work() {
+  while (const auto input = queue_->take()) process(*input);
+}
+
+cv::Mat FeatureTrackerRos::greyOf(const QueuedImage& image) {
+  return image.raw ? conversion_.toGrey(*image.raw) : conversion_.toGrey(*image.compressed);
+}
+
+void FeatureTrackerRos::process(const TrackerInput& input) {
+  std::vector<cv::Mat> images;
+  try {
+    images.push_back(greyOf(input.first));
+    if (input.second) images.push_back(greyOf(*input.second));
+  } catch (const InputError& error) {
+    refuse(error.what());
+    if (images.empty()) return;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const FeatureTrackerResult result = tracker_->track(images, input.first.stamp, input.imu);
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  for (const Event& event : result.events) hear(event);
+  const auto& first = input.first;
+  publish(result, images,
+          first.raw ? first.raw->header.frame_id : first.compressed->header.frame_id);
+  const std::lock_guard<std::mutex> lock(health_mutex_);
+  ++health_.images;
+  health_.statistics = result.statistics;
+  if (result.frame) health_.observations = static_cast<int>(result.frame->observations.size());
+  health_.milliseconds =
+      health_.images == 1 ? took.count()
+                          : (1.0 - kSmoothing) * health_.milliseconds + kSmoothing * took.count();
+}
+
+void FeatureTrackerRos::publish(const FeatureTrackerResult& result,
+                                const std::vector<cv::Mat>& images, const std::string& frame_id) {
+  if (result.restarted) {
+    std_msgs::Bool restart;
+    restart.data = true;
+    restart_publisher_.publish(restart);
+  }
+  if (!result.frame) return;
+  vins_msgs::FeatureFrame message = vins_msgs::toMsg(*result.frame);
+  message.header.frame_id = frame_id;
+  feature_publisher_.publish(message);
+  publishPicture(*result.frame, images, message.header);
+}
+
+void FeatureTrackerRos::publishPicture(const FeatureFrame& frame,
+                                       const std::vector<cv::Mat>& images,
+                                       const std_msgs::Header& header) {
+  if (!options_.draw_tracks || picture_publisher_.getNumSubscribers() == 0) return;
+  cv::Mat picture = drawTracks(images[0], frame, *rig_.cameras[0]);
+  if (images.size() == 2 && rig_.cameras.size() == 2 && images[1].rows == picture.rows) {
+    cv::hconcat(picture, drawTracks(images[1], frame, *rig_.cameras[1], 1), picture);
+  }
+  picture_publisher_.publish(cv_bridge::CvImage(header, "bgr8", picture).toImageMsg());
+}
+
+void FeatureTrackerRos::hear(const Event& event) {
+  if (event.code == "image_refused") return refuse(event.text);
+  std::ostringstream text;
+  text << event;
+  if (event.severity == Severity::kInfo) {
+    ROS_INFO_STREAM(text.str());
+  } else {
+    ROS_WARN_STREAM(text.str());
+  }
+}
+
+void FeatureTrackerRos::refuse(const std::string& why) {
+  ROS_ERROR_STREAM_THROTTLE(1.0, why);
+  const std::lock_guard<std::mutex> lock(health_mutex_);
+  ++health_.refused;
+  health_.last_problem = why;
+}
+
+void FeatureTrackerRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  Health health;
+  {
+    const std::lock_guard<std::mutex> lock(health_mutex_);
+    health = health_;
+    health_.last_problem.clear();
+  }
+  if (!health.last_problem.empty()) {
+    status.summary(Level::ERROR, health.last_problem);
+  } else if (health.images == 0) {
+    status.summary(Level::WARN, "no image yet on " + rig_.image_topic);
+  } else if (health.statistics.inliers < options_.min_tracks) {
+    status.summary(Level::WARN, "too few tracks");
+  } else {
+    status.summary(Level::OK, "tracking");
+  }
+  status.add("images", health.images);
+  status.add("images refused", health.refused);
+  status.add("images dropped", queue_->dropped());
+  status.add("observations", health.observations);
+  status.add("inlier ratio", health.statistics.inlier_ratio);
+  status.add("mean track length [images]", health.statistics.mean_track_length);
+  status.add("gyroscope used", health.statistics.turn_measured);
+  status.add("time per image [ms]", health.milliseconds);
+}
+
+}  // namespace vins

@@ -1,0 +1,94 @@
+#include "feature_tracker/corner_grid.h"
+
+#include <gtest/gtest.h>
+
+#include "camera_model/testing/example_cameras.h"
+#include "feature_tracker/optical_flow.h"
+#include "plane_world.h"
+
+namespace vins {
+namespace {
+
+constexpr ImageSize kSize{752, 480};
+
+ImagePyramid texturedPyramid() {
+  ImagePyramid pyramid;
+  pyramid.build(testing::PlaneWorld(testing::exampleCameras().front()).render(Pose()), {});
+  return pyramid;
+}
+
+double smallestDistance(const std::vector<cv::Point2f>& pixels) {
+  double smallest = 1e9;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k)
+      smallest = std::min(smallest, cv::norm(pixels[i] - pixels[k]));
+  }
+  return smallest;
+}
+
+std::vector<cv::Point2f> pixelsOf(const std::vector<Corner>& corners) {
+  std::vector<cv::Point2f> pixels;
+  for (const Corner& corner : corners) pixels.push_back(corner.pixel);
+  return pixels;
+}
+
+TEST(CornerGrid, KeepsTheDistanceTheBorderAndTheCount) {
+  CornerGrid grid(kSize, {}, {});
+  const std::vector<Corner> corners = grid.detect(texturedPyramid().gradients(), {});
+  EXPECT_GT(corners.size(), 120U);
+  EXPECT_LE(corners.size(), 150U);
+  EXPECT_GE(smallestDistance(pixelsOf(corners)), 30.0);
+  for (const Corner& corner : corners) EXPECT_TRUE(grid.allows(corner.pixel));
+}
+
+TEST(CornerGrid, FillsUpAroundThoseThatAreThere) {
+  CornerGrid grid(kSize, {}, {});
+  const ImagePyramid pyramid = texturedPyramid();
+  std::vector<cv::Point2f> pixels = pixelsOf(grid.detect(pyramid.gradients(), {}));
+  pixels.resize(pixels.size() - 40);
+  const std::vector<Corner> more = grid.detect(pyramid.gradients(), pixels);
+  EXPECT_GT(more.size(), 20U);
+  for (const Corner& corner : more) pixels.push_back(corner.pixel);
+  EXPECT_GE(smallestDistance(pixels), 30.0);
+  EXPECT_LE(pixels.size(), 150U);
+}
+
+TEST(CornerGrid, StaysOutOfMaskAndShunnedPlaces) {
+  cv::Mat mask(kSize.height, kSize.width, CV_8U, cv::Scalar(255));
+  mask(cv::Rect(0, 0, 376, 480)).setTo(0);
+  CornerGrid grid(kSize, {}, mask);
+  const cv::Point2f shunned(560.0F, 240.0F);
+  const auto corners = grid.detect(texturedPyramid().gradients(), {}, {shunned});
+  EXPECT_GT(corners.size(), 40U);
+  for (const Corner& corner : corners) {
+    EXPECT_GE(corner.pixel.x, 375.5F);
+    EXPECT_GE(cv::norm(corner.pixel - shunned), 30.0);
+  }
+}
+
+TEST(CornerGrid, FindsTheCornerOfASquareToAPixel) {
+  cv::Mat image(480, 752, CV_8U, cv::Scalar(40));
+  image(cv::Rect(300, 200, 100, 100)).setTo(200);
+  ImagePyramid pyramid;
+  pyramid.build(image, {});
+  CornerGrid grid(kSize, {}, {});
+  const auto corners = grid.detect(pyramid.gradients(), {});
+  ASSERT_EQ(corners.size(), 4U);
+  for (const Corner& corner : corners) {
+    // The centre of the window's response lies a little inside of the corner itself.
+    const float dx = std::min(std::abs(corner.pixel.x - 299.5F), std::abs(corner.pixel.x - 399.5F));
+    const float dy = std::min(std::abs(corner.pixel.y - 199.5F), std::abs(corner.pixel.y - 299.5F));
+    EXPECT_LT(dx, 3.0F);
+    EXPECT_LT(dy, 3.0F);
+  }
+}
+
+TEST(CornerGrid, FindsNothingWhereThereIsNothing) {
+  ImagePyramid pyramid;
+  pyramid.build(cv::Mat(480, 752, CV_8U, cv::Scalar(128)), {});
+  CornerGrid grid(kSize, {}, {});
+  EXPECT_TRUE(grid.detect(pyramid.gradients(), {}).empty());
+}
+
+}  // namespace
+}  // namespace vins

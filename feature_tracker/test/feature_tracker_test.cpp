@@ -1,0 +1,206 @@
+#include "feature_tracker/feature_tracker.h"
+
+#include <limits>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "camera_model/testing/example_cameras.h"
+#include "plane_world.h"
+#include "vins_core/input_error.h"
+#include "vins_core/so3.h"
+
+namespace vins {
+namespace {
+
+constexpr Stamp kPeriod = 50'000'000;
+
+Pose swayingPose(int i) {
+  const double t = 0.05 * i;
+  return {so3::exp({0.05 * std::sin(t), 0.08 * std::sin(0.7 * t), 0.1 * std::sin(0.5 * t)}),
+          {0.4 * std::sin(0.8 * t), 0.3 * std::sin(0.6 * t), 0.2 * std::sin(0.5 * t)}};
+}
+
+/// Images of a swaying camera, rendered once for all tests.
+const std::vector<cv::Mat>& swayingImages() {
+  static const std::vector<cv::Mat> images = [] {
+    const testing::PlaneWorld world(testing::exampleCameras().front());
+    std::vector<cv::Mat> rendered;
+    for (int i = 0; i < 30; ++i) rendered.push_back(world.render(swayingPose(i)));
+    return rendered;
+  }();
+  return images;
+}
+
+FeatureTracker makeTracker(const FeatureTrackerOptions& options = {}, const cv::Mat& mask = {}) {
+  return FeatureTracker({testing::exampleCameras().front()}, {Pose()}, options, mask);
+}
+
+FeatureTrackerResult step(FeatureTracker* tracker, int i) {
+  return tracker->track({swayingImages()[i]}, kPeriod * (i + 1), {});
+}
+
+bool hasEvent(const FeatureTrackerResult& result, const std::string& code) {
+  for (const Event& event : result.events) {
+    if (event.code == code) return true;
+  }
+  return false;
+}
+
+TEST(FeatureTracker, FollowsTheTruthAndFillsEveryField) {
+  const testing::PlaneWorld world(testing::exampleCameras().front());
+  FeatureTracker tracker = makeTracker();
+  std::map<std::int64_t, Eigen::Vector3d> points, bearings;
+  for (int i = 0; i < 30; ++i) {
+    const auto result = step(&tracker, i);
+    ASSERT_TRUE(result.frame);
+    EXPECT_EQ(result.frame->sequence, static_cast<std::uint32_t>(i));
+    EXPECT_EQ(result.frame->stamp, kPeriod * (i + 1));
+    EXPECT_GT(result.frame->observations.size(), 100U);
+    for (const auto& observation : result.frame->observations) {
+      EXPECT_NEAR(observation.bearing.norm(), 1.0, 1e-9);
+      EXPECT_NEAR(observation.angular_resolution, 1.0 / 460.0, 1e-3);
+      if (observation.track_length == 1) {
+        EXPECT_EQ(points.count(observation.id), 0U) << "an id is used again";
+        EXPECT_EQ(observation.bearing_velocity, Eigen::Vector3d::Zero().eval());
+        points[observation.id] = *world.pointAt(swayingPose(i), observation.pixel);
+      } else {
+        const Eigen::Vector3d velocity = (observation.bearing - bearings[observation.id]) / 0.05;
+        EXPECT_LT((observation.bearing_velocity - velocity).norm(), 1e-9);
+        const auto pixel = world.project(swayingPose(i), points[observation.id]);
+        EXPECT_LT((observation.pixel - *pixel).norm(), 1.0);
+      }
+      bearings[observation.id] = observation.bearing;
+    }
+  }
+}
+
+TEST(FeatureTracker, IsTheSameBitForBit) {
+  FeatureTracker a = makeTracker(), b = makeTracker();
+  for (int i = 0; i < 15; ++i) {
+    const auto first = step(&a, i), second = step(&b, i);
+    ASSERT_EQ(first.frame->observations.size(), second.frame->observations.size());
+    for (std::size_t k = 0; k < first.frame->observations.size(); ++k) {
+      EXPECT_EQ(first.frame->observations[k].id, second.frame->observations[k].id);
+      EXPECT_EQ(first.frame->observations[k].pixel, second.frame->observations[k].pixel);
+      EXPECT_EQ(first.frame->observations[k].bearing, second.frame->observations[k].bearing);
+    }
+  }
+}
+
+TEST(FeatureTracker, HandsOutAtTheRateThatIsAskedFor) {
+  FeatureTrackerOptions options;
+  options.frequency = 10.0;
+  FeatureTracker tracker = makeTracker(options);
+  int frames = 0, longest = 0;
+  for (int i = 0; i < 20; ++i) {
+    const auto result = step(&tracker, i);
+    if (!result.frame) continue;
+    ++frames;
+    for (const auto& observation : result.frame->observations) {
+      longest = std::max(longest, observation.track_length);
+    }
+  }
+  EXPECT_EQ(frames, 10);
+  EXPECT_GE(longest, 19);  // tracking runs on every image
+}
+
+TEST(FeatureTracker, HonoursTheMask) {
+  cv::Mat mask(480, 752, CV_8U, cv::Scalar(255));
+  mask(cv::Rect(0, 0, 376, 480)).setTo(0);
+  FeatureTracker tracker = makeTracker({}, mask);
+  for (int i = 0; i < 10; ++i) {
+    const auto result = step(&tracker, i);
+    for (const auto& observation : result.frame->observations) {
+      EXPECT_GE(observation.pixel.x(), 375.0);
+    }
+  }
+}
+
+TEST(FeatureTracker, SurvivesAStepOfTheGain) {
+  FeatureTracker tracker = makeTracker();
+  for (int i = 0; i < 5; ++i) step(&tracker, i);
+  cv::Mat darker;
+  swayingImages()[5].convertTo(darker, CV_8U, 0.6);
+  const auto result = tracker.track({darker}, kPeriod * 6, {});
+  EXPECT_GT(result.statistics.inliers, result.statistics.before * 85 / 100);
+}
+
+TEST(FeatureTracker, StartsAgainWhenTimeJumps) {
+  FeatureTracker tracker = makeTracker();
+  std::set<std::int64_t> ids;
+  for (int i = 0; i < 5; ++i) {
+    const auto result = step(&tracker, i);
+    for (const auto& observation : result.frame->observations) ids.insert(observation.id);
+  }
+  const auto back = tracker.track({swayingImages()[5]}, kPeriod, {});
+  EXPECT_TRUE(back.restarted);
+  EXPECT_TRUE(hasEvent(back, "tracker_restarted"));
+  for (const auto& observation : back.frame->observations) {
+    EXPECT_EQ(observation.track_length, 1);
+    EXPECT_EQ(ids.count(observation.id), 0U);
+  }
+  const auto gap = tracker.track({swayingImages()[6]}, kPeriod + 5'000'000'000, {});
+  EXPECT_TRUE(gap.restarted);
+}
+
+TEST(FeatureTracker, ReportsABlackoutAndItsEnd) {
+  FeatureTracker tracker = makeTracker();
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(step(&tracker, i).events.empty());
+  const auto dark = tracker.track({cv::Mat::zeros(480, 752, CV_8U)}, kPeriod * 4, {});
+  EXPECT_TRUE(hasEvent(dark, "tracking_lost"));
+  ASSERT_TRUE(dark.frame);
+  EXPECT_TRUE(dark.frame->observations.empty());
+  EXPECT_FALSE(hasEvent(step(&tracker, 4), "tracking_lost"));  // said once
+  EXPECT_TRUE(hasEvent(step(&tracker, 5), "tracking_resumed"));
+}
+
+TEST(FeatureTracker, RefusesBadImagesWithAWord) {
+  FeatureTracker tracker = makeTracker();
+  step(&tracker, 0);
+  const std::vector<std::vector<cv::Mat>> bad = {{},
+                                                 {cv::Mat()},
+                                                 {cv::Mat::zeros(100, 752, CV_8U)},
+                                                 {cv::Mat::zeros(480, 752, CV_16U)},
+                                                 {cv::Mat::zeros(480, 752, CV_8UC3)}};
+  for (const auto& images : bad) {
+    const auto result = tracker.track(images, kPeriod * 2, {});
+    EXPECT_FALSE(result.frame);
+    ASSERT_TRUE(hasEvent(result, "image_refused"));
+  }
+  const auto small = tracker.track(bad[2], kPeriod * 2, {});
+  EXPECT_NE(small.events[0].text.find("752x100"), std::string::npos);
+  EXPECT_NE(small.events[0].text.find("752x480"), std::string::npos);
+  for (const Stamp stamp : {kPeriod, Stamp{-1}, std::numeric_limits<Stamp>::min()}) {
+    EXPECT_TRUE(hasEvent(tracker.track({swayingImages()[1]}, stamp, {}), "image_refused"));
+  }
+  EXPECT_GT(tracker.track({swayingImages()[1]}, kPeriod * 2, {}).statistics.inliers, 100);
+}
+
+TEST(FeatureTracker, NeverCrashesOnFuzz) {
+  FeatureTrackerOptions options;
+  options.equalization = Equalization::kWhereDull;
+  FeatureTracker tracker = makeTracker(options);
+  cv::RNG random(3);
+  Stamp stamp = kPeriod;
+  for (int i = 0; i < 120; ++i) {
+    cv::Mat image(480, 752, CV_8U, cv::Scalar(i % 3 == 0 ? 0 : 255));
+    if (i % 4 == 1) random.fill(image, cv::RNG::UNIFORM, 0, 256);
+    if (i % 4 == 2) image = swayingImages()[i % 30];
+    if (i % 7 == 0) image = image(cv::Rect(0, 0, 100 + i, 7)).clone();
+    stamp += random.uniform(-1, 4) * kPeriod;
+    ImuSample sample{stamp, Eigen::Vector3d::Zero(),
+                     Eigen::Vector3d::Constant(i % 5 == 0 ? std::nan("") : 1e3 * (i % 6))};
+    EXPECT_NO_THROW(tracker.track({image}, i % 11 == 0 ? -stamp : stamp, {sample}));
+  }
+}
+
+TEST(FeatureTracker, RefusesWhatItCannotBeMadeFrom) {
+  const auto camera = testing::exampleCameras().front();
+  EXPECT_THROW(FeatureTracker({}, {}, {}), InputError);
+  EXPECT_THROW(FeatureTracker({camera}, {}, {}), InputError);
+  EXPECT_THROW(FeatureTracker({camera}, {Pose()}, {}, cv::Mat::zeros(9, 9, CV_8U)), InputError);
+}
+
+}  // namespace
+}  // namespace vins
