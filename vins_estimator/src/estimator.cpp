@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
+#include "vins_estimator/health/stillness.h"
 #include "vins_estimator/inertial/measurement_queue.h"
 #include "vins_estimator/initialization/initializer.h"
 #include "vins_estimator/visual/keyframe_choice.h"
-#include "vins_estimator/window/linearization.h"
 #include "vins_estimator/window/marginalization.h"
 #include "vins_estimator/window/outlier_gate.h"
 #include "vins_estimator/window/sliding_window.h"
@@ -34,6 +34,7 @@ InitializerOptions initializerOptions(const EstimatorOptions& options) {
   result.imu = options.imu;
   result.T_bc = options.T_bc;
   result.pixel_noise = options.pixel_noise;
+  result.stillness.gravity = options.imu.gravity;
   result.max_frames = options.window_size + 1;
   return result;
 }
@@ -51,7 +52,9 @@ const char* toString(EstimatorStatus status) {
 class Estimator::Implementation {
  public:
   explicit Implementation(const EstimatorOptions& options)
-      : options_(options), initializer_(initializerOptions(options)) {
+      : options_(options),
+        initializer_(initializerOptions(options)),
+        stillness_(initializerOptions(options).stillness) {
     clearWindow();
   }
 
@@ -66,6 +69,7 @@ class Estimator::Implementation {
     moveEvents(queue_.takeEvents(), &result);
     if (measurements->restarted) reset();
     if (status_ == EstimatorStatus::kTracking && !isCredible(*measurements, &result)) reset();
+    stillness_.addFrame(measurements->frame, measurements->imu);
     if (status_ == EstimatorStatus::kInitializing) {
       initialize(*measurements, &result);
     } else {
@@ -79,6 +83,7 @@ class Estimator::Implementation {
     if (status_ == EstimatorStatus::kTracking) ++sequence_;
     status_ = EstimatorStatus::kInitializing;
     initializer_.clear();
+    stillness_.clear();
     clearWindow();
   }
 
@@ -146,6 +151,7 @@ class Estimator::Implementation {
     const NavState predicted = imu.predict(last, window_.g_w);
     WindowFrame frame{next_frame_id_++, measurements.frame.stamp, WindowState(predicted),
                       std::move(imu)};
+    frame.stands_still = stillness_.isStill();
     if (!options_.first_estimates) frame.state.ignoreFirstEstimates();
     window_.landmarks.addFrame(frame.id, measurements.frame);
     window_.frames.push_back(std::move(frame));
@@ -166,10 +172,10 @@ class Estimator::Implementation {
     statistics.cost_final = summary.cost_final;
     statistics.outliers = removeOutliers({}, &window_);
     statistics.solve_seconds = watch.seconds();
+    window_.frames.back().covariance = summary.newest_covariance;
   }
 
   void report(const FrameMeasurements& measurements, EstimatorResult* result) {
-    const StopWatch watch;
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
     Odometry odometry;
     odometry.stamp = measurements.frame.stamp;
@@ -179,14 +185,12 @@ class Estimator::Implementation {
       odometry.angular_velocity_b =
           measurements.imu.back().angular_velocity - odometry.state.gyroscope_bias;
     }
-    odometry.covariance = newestCovariance(window_, WindowSolverOptions{}.huber);
-    window_.frames.back().covariance = odometry.covariance;
+    odometry.covariance = window_.frames.back().covariance;
     result->odometry = odometry;
     result->landmarks = landmarkPoints();
     for (const WindowFrame& frame : window_.frames) {
       result->window.push_back({frame.stamp, frame.state.value()});
     }
-    result->statistics.covariance_seconds = watch.seconds();
   }
 
   /// Keeps the second newest frame or lets it go, and makes room.
@@ -259,6 +263,7 @@ class Estimator::Implementation {
   EstimatorOptions options_;
   MeasurementQueue queue_;
   Initializer initializer_;
+  StillnessDetector stillness_;
   SlidingWindow window_;
   EstimatorStatus status_ = EstimatorStatus::kInitializing;
   FrameId next_frame_id_ = 0;

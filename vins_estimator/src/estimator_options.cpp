@@ -127,6 +127,32 @@ const char* toString(ExtrinsicMode mode) {
   return "unknown";
 }
 
+/// Everything but the vibration's share.
+ImuNoise readDensities(const Parameters& parameters) {
+  const double gravity = parameters.numberOr("g_norm", 9.81, kGravity);
+  const std::string unit =
+      parameters.textOr("imu_noise_unit", "auto", {"auto", "density", "sample"});
+  const double rate = parameters.numberOr("imu_rate", 200.0, {10.0, 10000.0});
+  if (!parameters.has("acc_n")) {
+    if (parameters.has("accelerometer_noise_density")) return readKalibrNoise(parameters, gravity);
+    if (parameters.has("imu0")) return readKalibrNoise(parameters.section("imu0"), gravity);
+  }
+  ImuNoise noise;
+  noise.accelerometer_noise = parameters.number("acc_n", kDensity);
+  noise.gyroscope_noise = parameters.number("gyr_n", kDensity);
+  noise.accelerometer_walk = parameters.number("acc_w", kDensity);
+  noise.gyroscope_walk = parameters.number("gyr_w", kDensity);
+  noise.gravity = gravity;
+  const bool is_sample =
+      unit == "sample" || (unit == "auto" && noise.accelerometer_noise > kSampleAbove);
+  if (!is_sample) return noise;
+  for (double* value : {&noise.accelerometer_noise, &noise.gyroscope_noise,
+                        &noise.accelerometer_walk, &noise.gyroscope_walk}) {
+    *value /= std::sqrt(rate);
+  }
+  return noise;
+}
+
 }  // namespace
 
 void EstimatorOptions::validate() const {
@@ -184,27 +210,8 @@ EstimatorOptions readEstimatorOptions(const Parameters& parameters) {
 }
 
 ImuNoise readImuNoise(const Parameters& parameters) {
-  const double gravity = parameters.numberOr("g_norm", 9.81, kGravity);
-  const std::string unit =
-      parameters.textOr("imu_noise_unit", "auto", {"auto", "density", "sample"});
-  const double rate = parameters.numberOr("imu_rate", 200.0, {10.0, 10000.0});
-  if (!parameters.has("acc_n")) {
-    if (parameters.has("accelerometer_noise_density")) return readKalibrNoise(parameters, gravity);
-    if (parameters.has("imu0")) return readKalibrNoise(parameters.section("imu0"), gravity);
-  }
-  ImuNoise noise;
-  noise.accelerometer_noise = parameters.number("acc_n", kDensity);
-  noise.gyroscope_noise = parameters.number("gyr_n", kDensity);
-  noise.accelerometer_walk = parameters.number("acc_w", kDensity);
-  noise.gyroscope_walk = parameters.number("gyr_w", kDensity);
-  noise.gravity = gravity;
-  const bool is_sample =
-      unit == "sample" || (unit == "auto" && noise.accelerometer_noise > kSampleAbove);
-  if (!is_sample) return noise;
-  for (double* value : {&noise.accelerometer_noise, &noise.gyroscope_noise,
-                        &noise.accelerometer_walk, &noise.gyroscope_walk}) {
-    *value /= std::sqrt(rate);
-  }
+  ImuNoise noise = readDensities(parameters);
+  noise.vibration_share = parameters.numberOr("vibration_share", noise.vibration_share, {0.0, 1.0});
   return noise;
 }
 

@@ -70,6 +70,7 @@ SyntheticWindow makeWindow(int frames, int landmarks, double noise, VisibilityOf
     start.frames.push_back({features, state, imu});
     result.truth.push_back(state);
   }
+  start.mean = result.truth.front();
   start.sigma << 1e-3, 1e-3, 1e-3, 0.05, 0.05, 1e-3, 1, 1, 1, 0.2, 0.2, 0.2, 0.05, 0.05, 0.05;
   startWindow(start, 0, &window);
   triangulateTracks(&window);

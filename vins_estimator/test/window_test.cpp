@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "synthetic_window.h"
-#include "vins_estimator/window/linearization.h"
 #include "vins_estimator/window/marginalization.h"
 #include "vins_estimator/window/outlier_gate.h"
 #include "vins_estimator/window/window_solver.h"
+#include "vins_estimator/window/window_system.h"
 
 namespace vins {
 namespace {
@@ -51,9 +51,21 @@ MatrixXd nullSpace(const SlidingWindow& window) {
   return N;
 }
 
+MatrixXd windowInformation(const SlidingWindow& window) {
+  WindowSystem system(window, kHuber);
+  system.linearize(system.present());  // without a prior the information is singular, but there
+  return system.information();
+}
+
+Matrix15d newestCovariance(const SlidingWindow& window) {
+  WindowSystem system(window, kHuber);
+  EXPECT_TRUE(system.linearize(system.present()));
+  return system.newestCovariance();
+}
+
 /// Largest information along the null space, against the least of the shifts' usual scale.
 double informationOnNullSpace(const SlidingWindow& window) {
-  const MatrixXd H = windowInformation(window, kHuber);
+  const MatrixXd H = windowInformation(window);
   const MatrixXd N = nullSpace(window);
   return (N.transpose() * H * N).cwiseAbs().maxCoeff();
 }
@@ -87,16 +99,16 @@ TEST(WindowSolver, IsDeterministic) {
             Vector15d::Zero());
 }
 
-TEST(Linearization, NewestCovarianceIsTheBlockOfTheInverse) {
+TEST(WindowSystem, NewestCovarianceIsTheBlockOfTheInverse) {
   const SyntheticWindow synthetic = makeWindow(6, 60, 1.0, always);
-  const MatrixXd H = windowInformation(synthetic.window, kHuber);
+  const MatrixXd H = windowInformation(synthetic.window);
   const MatrixXd inverse = H.ldlt().solve(MatrixXd::Identity(H.rows(), H.cols()));
-  const Matrix15d covariance = newestCovariance(synthetic.window, kHuber);
+  const Matrix15d covariance = newestCovariance(synthetic.window);
   const Matrix15d expected = inverse.bottomRightCorner<15, 15>();
   EXPECT_LT((covariance - expected).norm(), 1e-6 * expected.norm());
 }
 
-TEST(Linearization, InformationIsBlindToPositionAndYaw) {
+TEST(WindowSystem, InformationIsBlindToPositionAndYaw) {
   SyntheticWindow synthetic = makeWindow(6, 60, 1.0, always);
   EXPECT_GT(informationOnNullSpace(synthetic.window), 1e5);  // the prior on the first state
   synthetic.window.prior = Prior{};
@@ -106,9 +118,9 @@ TEST(Linearization, InformationIsBlindToPositionAndYaw) {
 TEST(Marginalization, LosesNothingWhenAllOfTheOldestFramesLandmarksGo) {
   SyntheticWindow synthetic = makeWindow(7, 60, 1.0, halfLost);
   SlidingWindow& window = synthetic.window;
-  const Matrix15d before = newestCovariance(window, kHuber);
+  const Matrix15d before = newestCovariance(window);
   marginalizeOldest(kHuber, &window);
-  const Matrix15d after = newestCovariance(window, kHuber);
+  const Matrix15d after = newestCovariance(window);
   // The information along a landmark's depth is regularized by 1e-6 in the one and not the other.
   EXPECT_LT((after - before).norm(), 1e-5 * before.norm());
 }
@@ -124,7 +136,7 @@ TEST(Marginalization, KeepsTheOptimum) {
   marginalizeOldest(kHuber, &window);
   solveWindow(options, &window);
   // A solution stops when its cost changes by less than 1e-4 of itself.
-  const Vector15d sigma = newestCovariance(window, kHuber).diagonal().cwiseSqrt();
+  const Vector15d sigma = newestCovariance(window).diagonal().cwiseSqrt();
   const Vector15d moved = minus(window.frames.back().state.value(), before);
   EXPECT_LT(moved.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.1);
 }

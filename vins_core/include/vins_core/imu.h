@@ -35,6 +35,9 @@ struct ImuNoise {
   double accelerometer_walk = 0.00004;  ///< acc_w [m/s^3/sqrt(Hz)]
   double gyroscope_walk = 2.0e-6;       ///< gyr_w [rad/s^2/sqrt(Hz)]
   double gravity = 9.81;                ///< g_norm, magnitude [m/s^2]
+  /// Rotors shake an accelerometer by many times its noise. The shaking is no white noise: most of
+  /// it averages out within a few periods, this share of its amplitude does not (vibration_share).
+  double vibration_share = 0.2;
 
   /// Throws InputError naming the first value that is not positive and finite.
   void validate() const;

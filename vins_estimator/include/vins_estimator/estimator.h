@@ -45,7 +45,6 @@ struct EstimatorStatistics {
   bool keyframe = false;             ///< the window slid by its oldest frame
   double solve_seconds = 0.0;        ///< for people and diagnostics only: nothing depends on it
   double marginalize_seconds = 0.0;  ///< as above
-  double covariance_seconds = 0.0;   ///< as above
 };
 
 /// A landmark of the window in the world, for pictures.

@@ -20,7 +20,7 @@ struct EstimatorOptions {
   ImuNoise imu;
   Pose T_bc;                        ///< camera in the body frame (extrinsicRotation, -Translation)
   double td = 0.0;                  ///< t_imu = t_cam + td [s]
-  double pixel_noise = 1.0;         ///< deviation of a tracked corner, per axis [px]
+  double pixel_noise = 0.5;         ///< deviation of a tracked corner, per axis [px]
   int window_size = 10;             ///< keyframes kept
   double keyframe_parallax = 10.0;  ///< rotation-compensated, for a new keyframe [px]
   int min_tracks = 10;              ///< below this, tracking counts as lost

@@ -26,50 +26,10 @@ Eigen::Vector2d directionResidual(const BearingMeasurement& measured, const Vect
   return measured.inverse_sigma * tangent;
 }
 
-/// A landmark's way from the host's camera to the target's, scaled by rho all the way, so that
-/// landmarks at infinity take it too.
-struct Transfer {
-  Matrix3d R_wh;
-  Matrix3d R_tw;
-  Matrix3d R_cb;
-  Vector3d in_host;    ///< rho times its place in the host's body
-  Vector3d in_target;  ///< and in the target's
-  Vector3d in_camera;  ///< and in the target's camera
-};
-
-Transfer transfer(const LandmarkAnchor& anchor, const Pose& T_bc, const Pose& T_wh,
-                  const Pose& T_wt, const LandmarkParameters& landmark) {
-  const double rho = landmark.z();
-  Transfer t;
-  t.R_wh = T_wh.rotation.toRotationMatrix();
-  t.R_tw = T_wt.rotation.conjugate().toRotationMatrix();
-  t.R_cb = T_bc.rotation.conjugate().toRotationMatrix();
-  t.in_host = t.R_cb.transpose() * anchoredDirection(anchor, landmark) + rho * T_bc.position;
-  t.in_target = t.R_tw * (t.R_wh * t.in_host + rho * (T_wh.position - T_wt.position));
-  t.in_camera = t.R_cb * (t.in_target - rho * T_bc.position);
-  return t;
-}
-
-BearingJacobians bearingJacobians(const Matrix23d& J_h, const Transfer& t,
-                                  const LandmarkAnchor& anchor, const Pose& T_bc, const Pose& T_wh,
-                                  const Pose& T_wt, const LandmarkParameters& landmark) {
-  const double rho = landmark.z();
-  const Matrix23d J_body = J_h * t.R_cb;      // by the place in the target's body
-  const Matrix23d J_world = J_body * t.R_tw;  // by the place in the world
-  const Matrix23d J_host_body = J_world * t.R_wh;
-  const Matrix23d J_direction = J_host_body * t.R_cb.transpose();
-  BearingJacobians J;
-  J.J_host.leftCols<3>() = rho * J_world;
-  J.J_host.rightCols<3>() = -J_host_body * so3::hat(t.in_host);
-  J.J_target.leftCols<3>() = -rho * J_world;
-  J.J_target.rightCols<3>() = J_body * so3::hat(t.in_target);
-  J.J_landmark.leftCols<2>() = J_direction * anchor.basis;
-  J.J_landmark.col(2) = J_host_body * T_bc.position + J_world * (T_wh.position - T_wt.position) -
-                        J_body * T_bc.position;
-  J.J_extrinsic.leftCols<3>() = rho * (J_host_body - J_body);
-  J.J_extrinsic.rightCols<3>() =
-      J_h * so3::hat(t.in_camera) - J_direction * so3::hat(anchoredDirection(anchor, landmark));
-  return J;
+/// Direction in the target's camera of a landmark, times rho: landmarks at infinity have it, too.
+Vector3d directionInTarget(const Vector3d& direction_w, const ViewGeometry& host,
+                           const ViewGeometry& target, double rho) {
+  return target.R_wc.transpose() * (direction_w + rho * (host.p_wc - target.p_wc));
 }
 
 void writePoseJacobian(const Matrix26d& J, double* jacobian) {
@@ -94,31 +54,50 @@ Vector3d anchoredDirection(const LandmarkAnchor& anchor, const LandmarkParameter
   return anchor.bearing + anchor.basis * landmark.head<2>();
 }
 
+ViewGeometry viewGeometry(const Pose& T_wb, const Pose& T_bc) {
+  ViewGeometry view;
+  view.R_wb = T_wb.rotation.toRotationMatrix();
+  view.p_wb = T_wb.position;
+  view.R_wc = view.R_wb * T_bc.rotation.toRotationMatrix();
+  view.p_wc = view.R_wb * T_bc.position + T_wb.position;
+  return view;
+}
+
 Eigen::Vector2d bearingResidual(const BearingMeasurement& measured, const LandmarkAnchor& anchor,
-                                const Pose& T_bc, const Pose& T_wb_host, const Pose& T_wb_target,
+                                const ViewGeometry& host, const ViewGeometry& target,
                                 const LandmarkParameters& landmark, BearingJacobians* jacobians) {
-  const Transfer t = transfer(anchor, T_bc, T_wb_host, T_wb_target, landmark);
-  if (jacobians == nullptr) return directionResidual(measured, t.in_camera, nullptr);
+  const double rho = landmark.z();
+  const Vector3d direction_w = host.R_wc * anchoredDirection(anchor, landmark);
+  const Vector3d h = directionInTarget(direction_w, host, target, rho);
+  if (jacobians == nullptr) return directionResidual(measured, h, nullptr);
   Matrix23d J_h;
-  const Eigen::Vector2d residual = directionResidual(measured, t.in_camera, &J_h);
-  *jacobians = bearingJacobians(J_h, t, anchor, T_bc, T_wb_host, T_wb_target, landmark);
+  const Eigen::Vector2d residual = directionResidual(measured, h, &J_h);
+  const Matrix23d J_w = J_h * target.R_wc.transpose();  // by the landmark's place in the world
+  // A body's turn moves the landmark by the lever from the body to it, and the other way round.
+  const Vector3d from_host = direction_w + rho * (host.p_wc - host.p_wb);
+  const Vector3d from_target = direction_w + rho * (host.p_wc - target.p_wb);
+  jacobians->J_host.leftCols<3>() = rho * J_w;
+  jacobians->J_host.rightCols<3>().noalias() = -(J_w * so3::hat(from_host)) * host.R_wb;
+  jacobians->J_target.leftCols<3>() = -rho * J_w;
+  jacobians->J_target.rightCols<3>().noalias() = (J_w * so3::hat(from_target)) * target.R_wb;
+  jacobians->J_landmark.leftCols<2>().noalias() = (J_w * host.R_wc) * anchor.basis;
+  jacobians->J_landmark.col(2).noalias() = J_w * (host.p_wc - target.p_wc);
   return residual;
 }
 
-Eigen::Vector2d firstEstimatesResidual(const BearingMeasurement& measured,
-                                       const LandmarkAnchor& anchor, const Pose& T_bc,
-                                       const WindowState& host, const Pose& T_wb_host,
-                                       const WindowState& target, const Pose& T_wb_target,
-                                       const LandmarkParameters& landmark,
-                                       BearingJacobians* jacobians) {
-  const bool at_present = !host.hasPoseForJacobians() && !target.hasPoseForJacobians();
-  const Eigen::Vector2d residual = bearingResidual(measured, anchor, T_bc, T_wb_host, T_wb_target,
-                                                   landmark, at_present ? jacobians : nullptr);
-  if (!at_present && jacobians != nullptr) {
-    bearingResidual(measured, anchor, T_bc, host.poseForJacobians(T_wb_host),
-                    target.poseForJacobians(T_wb_target), landmark, jacobians);
-  }
-  return residual;
+Eigen::Matrix<double, 2, 6> extrinsicJacobian(const BearingMeasurement& measured,
+                                              const LandmarkAnchor& anchor,
+                                              const ViewGeometry& host, const ViewGeometry& target,
+                                              const LandmarkParameters& landmark) {
+  const Vector3d direction = anchoredDirection(anchor, landmark);
+  const Vector3d h = directionInTarget(host.R_wc * direction, host, target, landmark.z());
+  Matrix23d J_h;
+  directionResidual(measured, h, &J_h);
+  const Matrix23d J_w = J_h * target.R_wc.transpose();
+  Matrix26d J;
+  J.leftCols<3>() = landmark.z() * J_w * (host.R_wb - target.R_wb);
+  J.rightCols<3>() = J_h * so3::hat(h) - J_w * host.R_wc * so3::hat(direction);
+  return J;
 }
 
 Eigen::Vector2d hostResidual(const BearingMeasurement& measured, const LandmarkAnchor& anchor,
@@ -135,10 +114,16 @@ Eigen::Vector2d hostResidual(const BearingMeasurement& measured, const LandmarkA
 
 bool BearingFactor::Evaluate(double const* const* parameters, double* residuals,
                              double** jacobians) const {
+  const Pose T_wh = toPose(parameters[0]);
+  const Pose T_wt = toPose(parameters[1]);
+  const LandmarkParameters landmark(parameters[2]);
+  Eigen::Map<Eigen::Vector2d>{residuals} = bearingResidual(
+      measured_, anchor_, viewGeometry(T_wh, T_bc_), viewGeometry(T_wt, T_bc_), landmark, nullptr);
   BearingJacobians J;
-  Eigen::Map<Eigen::Vector2d>{residuals} = firstEstimatesResidual(
-      measured_, anchor_, T_bc_, host_, toPose(parameters[0]), target_, toPose(parameters[1]),
-      LandmarkParameters(parameters[2]), jacobians != nullptr ? &J : nullptr);
+  if (jacobians != nullptr) {
+    bearingResidual(measured_, anchor_, viewGeometry(host_.poseForJacobians(T_wh), T_bc_),
+                    viewGeometry(target_.poseForJacobians(T_wt), T_bc_), landmark, &J);
+  }
   if (jacobians == nullptr) return true;
   if (jacobians[0] != nullptr) writePoseJacobian(J.J_host, jacobians[0]);
   if (jacobians[1] != nullptr) writePoseJacobian(J.J_target, jacobians[1]);

@@ -98,8 +98,7 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals,
   const NavState i = toNavState(parameters[0], parameters[1]);
   const NavState j = toNavState(parameters[2], parameters[3]);
   const Matrix15d& weight = imu_.sqrtInformation();
-  Eigen::Map<Vector15d>(residuals).noalias() =
-      weight * imuResidual(imu_, g_w_, i, j);
+  Eigen::Map<Vector15d>(residuals).noalias() = weight * imuResidual(imu_, g_w_, i, j);
   if (jacobians == nullptr) return true;
   const ImuJacobians J = imuJacobians(imu_, g_w_, linearization(i_, i), linearization(j_, j));
   if (jacobians[0] != nullptr) writeJacobian<6>(weight, J.J_pose_i, jacobians[0]);

@@ -1,5 +1,8 @@
 #include "vins_estimator/inertial/preintegration.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/Cholesky>
 
 #include "vins_core/so3.h"
@@ -53,9 +56,9 @@ Matrix15d transition(const Midpoint& m) {
 /// s^2 / dt, constant over the step: the sum over many steps then has the variance s^2 t that the
 /// density says. (Two half-errors, one a reading, would be counted as independent in neighbouring
 /// steps, which share a reading, and halve it.)
-Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise, const Matrix15d& F, double scale) {
-  const double acc = scale * scale * noise.accelerometer_noise * noise.accelerometer_noise / m.dt;
-  const double gyr = scale * scale * noise.gyroscope_noise * noise.gyroscope_noise / m.dt;
+Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise, const Matrix15d& F) {
+  const double acc = noise.accelerometer_noise * noise.accelerometer_noise / m.dt;
+  const double gyr = noise.gyroscope_noise * noise.gyroscope_noise / m.dt;
   // An error of a reading acts as the opposite error of the bias does.
   const Eigen::Matrix<double, 9, 3> G_acc = F.block<9, 3>(0, kAccBias);
   const Eigen::Matrix<double, 9, 3> G_gyr = F.block<9, 3>(0, kGyrBias);
@@ -66,6 +69,33 @@ Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise, const Matrix15d& F
   Q.diagonal().segment<3>(kAccBias).array() += acc_walk;
   Q.diagonal().segment<3>(kGyrBias).array() += gyr_walk;
   return Q;
+}
+
+/// Variance of single readings, by their second differences, in which motion is nearly nil: those
+/// of white noise of variance v have the variance 6 v. The axis that is shaken most counts.
+double readingVariance(const std::vector<ImuSample>& samples) {
+  if (samples.size() < 3) return 0.0;
+  Vector3d squares = Vector3d::Zero();
+  for (std::size_t i = 2; i < samples.size(); ++i) {
+    squares +=
+        (samples[i].acceleration - 2.0 * samples[i - 1].acceleration + samples[i - 2].acceleration)
+            .cwiseAbs2();
+  }
+  return squares.maxCoeff() / (6.0 * static_cast<double>(samples.size() - 2));
+}
+
+/// The noise of a piece: scaled, and raised by what of its vibration does not average out.
+ImuNoise noiseOf(const ImuNoise& usual, const std::vector<ImuSample>& samples, double scale) {
+  ImuNoise noise = usual;
+  noise.accelerometer_noise *= scale;
+  noise.gyroscope_noise *= scale;
+  const double span = toSeconds(samples.back().stamp - samples.front().stamp);
+  const double period = span / static_cast<double>(samples.size() - 1);
+  const double white = noise.accelerometer_noise * noise.accelerometer_noise;
+  const double excess = std::max(0.0, readingVariance(samples) * period - white);
+  noise.accelerometer_noise =
+      std::sqrt(white + usual.vibration_share * usual.vibration_share * excess);
+  return noise;
 }
 
 }  // namespace
@@ -99,13 +129,14 @@ void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
 }
 
 void Preintegration::integratePiece(const Piece& piece) {
+  const ImuNoise noise = noiseOf(noise_, piece.samples, piece.noise_scale);
   for (std::size_t i = 1; i < piece.samples.size(); ++i) {
-    step(piece.samples[i - 1], piece.samples[i], piece.noise_scale);
+    step(piece.samples[i - 1], piece.samples[i], noise);
   }
   sqrt_information_known_ = false;
 }
 
-void Preintegration::step(const ImuSample& from, const ImuSample& to, double noise_scale) {
+void Preintegration::step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
   const double dt = toSeconds(to.stamp - from.stamp);
   if (dt <= 0.0) return;
   const Vector3d phi = dt * (0.5 * (from.angular_velocity + to.angular_velocity) - gyroscope_bias_);
@@ -125,7 +156,7 @@ void Preintegration::step(const ImuSample& from, const ImuSample& to, double noi
   duration_ += dt;
   const Matrix15d F = transition(m);
   jacobian_ = F * jacobian_;
-  covariance_ = F * covariance_ * F.transpose() + stepNoise(m, noise_, F, noise_scale);
+  covariance_ = F * covariance_ * F.transpose() + stepNoise(m, noise, F);
 }
 
 bool Preintegration::needsReintegration(const Vector3d& accelerometer_bias,

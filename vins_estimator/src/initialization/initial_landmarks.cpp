@@ -27,9 +27,9 @@ double squaredResidual(const InitialLandmark& landmark, std::size_t sighting, co
     HostBearingFactor(seen.measured, landmark.anchor).Evaluate(parameters, residual, nullptr);
     return residual[0] * residual[0] + residual[1] * residual[1];
   }
-  return bearingResidual(seen.measured, landmark.anchor, T_bc,
-                         toPose(blocks.poses[landmark.host()].data()),
-                         toPose(blocks.poses[seen.frame].data()), landmark.parameters, nullptr)
+  const ViewGeometry host = viewGeometry(toPose(blocks.poses[landmark.host()].data()), T_bc);
+  const ViewGeometry target = viewGeometry(toPose(blocks.poses[seen.frame].data()), T_bc);
+  return bearingResidual(seen.measured, landmark.anchor, host, target, landmark.parameters, nullptr)
       .squaredNorm();
 }
 

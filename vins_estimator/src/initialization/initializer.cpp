@@ -208,7 +208,17 @@ std::optional<Initialization> Initializer::alignFrames(const FrameIndices& chose
 Initialization Initializer::toInitialization(const FrameIndices& chosen,
                                              const Alignment& alignment) const {
   Initialization initialization;
-  initialization.sigma = alignment.sigma;
+  const JointRefinementOptions& joint = options_.alignment.joint;
+  constexpr double kUnknownTilt = 1.0;       // [rad]
+  constexpr double kUnknownVelocity = 10.0;  // [m/s]
+  initialization.mean = alignment.solution.states.front();
+  initialization.mean.accelerometer_bias.setZero();
+  initialization.mean.gyroscope_bias.setZero();
+  initialization.sigma.segment<3>(kPosition).setConstant(joint.position_sigma);
+  initialization.sigma.segment<3>(kRotation) << kUnknownTilt, kUnknownTilt, joint.yaw_sigma;
+  initialization.sigma.segment<3>(kVelocity).setConstant(kUnknownVelocity);
+  initialization.sigma.segment<3>(kAccBias).setConstant(joint.accelerometer_bias_sigma);
+  initialization.sigma.segment<3>(kGyrBias).setConstant(joint.gyroscope_bias_sigma);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     initialization.frames.push_back(
         {buffer_[chosen[i]].frame, alignment.solution.states[i], alignment.solution.imu[i]});

@@ -94,8 +94,9 @@ void Adjustment::addStates() {
   for (std::size_t i = 0; i < blocks_.poses.size(); ++i) {
     problem_->AddParameterBlock(blocks_.poses[i].data(), 7, &manifold_);
     problem_->AddParameterBlock(blocks_.motions[i].data(), 9);
+    // Within a group Ceres goes by addresses: of two arrays, either may come first in memory.
     ordering_->AddElementToGroup(blocks_.poses[i].data(), 1);
-    ordering_->AddElementToGroup(blocks_.motions[i].data(), 1);
+    ordering_->AddElementToGroup(blocks_.motions[i].data(), 2);
   }
 }
 
@@ -214,8 +215,8 @@ JointRefinement refineJointly(const JointRefinementOptions& options, JointProble
   Adjustment last(prior, problem);
   if (!last.solve(options.max_iterations)) return result;
   result.visual_rms = landmarkRms(problem->T_bc, last.blocks(), problem->landmarks);
-  result.squares = last.imuSquares() +
-                   landmarkSquares(problem->T_bc, last.blocks(), problem->landmarks);
+  result.squares =
+      last.imuSquares() + landmarkSquares(problem->T_bc, last.blocks(), problem->landmarks);
   result.converged = findDeviations(problem->states, &last, &result);
   return result;
 }

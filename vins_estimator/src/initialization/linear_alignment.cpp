@@ -23,9 +23,9 @@ struct GravityForm {
 /// What the IMU says of the path up to a frame, in the structure's frame and in metres, without
 /// the first position and velocity, and gravity.
 struct PathPoint {
-  double t = 0.0;                          ///< since the first frame [s]
+  double t = 0.0;                            ///< since the first frame [s]
   Vector3d displacement = Vector3d::Zero();  ///< with the camera's lever arm
-  Matrix3d J_bias = Matrix3d::Zero();      ///< by the accelerometer's bias
+  Matrix3d J_bias = Matrix3d::Zero();        ///< by the accelerometer's bias
 };
 
 std::vector<PathPoint> integratePath(const std::vector<Pose>& T_sc, const Pose& T_bc,
@@ -51,9 +51,9 @@ std::vector<PathPoint> integratePath(const std::vector<Pose>& T_sc, const Pose& 
   return path;
 }
 
-/// Camera positions c_k = q x_k + a + b t_k + t_k^2 / 2 span w' + J_k d, with q = 1 / scale, x_k the
-/// displacement with fixed gravity, and a, b, w', d first position, first velocity, w and bias, all
-/// times q.
+/// Camera positions c_k = q x_k + a + b t_k + t_k^2 / 2 span w' + J_k d, with q = 1 / scale, x_k
+/// the displacement with fixed gravity, and a, b, w', d first position, first velocity, w and bias,
+/// all times q.
 class LinearSystem {
  public:
   LinearSystem(const std::vector<Pose>& T_sc, const std::vector<PathPoint>& path)
@@ -115,11 +115,11 @@ bool LinearSystem::solve(const GravityForm& form, double bias_weight,
 }  // namespace
 
 std::optional<LinearAlignment> alignLinearly(const std::vector<Pose>& T_sc, const Pose& T_bc,
-                                             const std::vector<Preintegration>& imu,
-                                             double gravity, double bias_sigma) {
+                                             const std::vector<Preintegration>& imu, double gravity,
+                                             double bias_sigma) {
   constexpr int kIterations = 10;
   constexpr double kDirectionStands = 1e-6;  // [rad]
-  constexpr double kLeastScatter = 1e-6;     // of the positions, lest the bias be left without prior
+  constexpr double kLeastScatter = 1e-6;  // of the positions, lest the bias be left without prior
   const std::vector<PathPoint> path = integratePath(T_sc, T_bc, imu);
   const LinearSystem system(T_sc, path);
   LinearAlignment result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <string>
@@ -20,6 +21,10 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+constexpr double kNearlyAsGood = 2.0;      ///< cost of a second solution over that of the best
+constexpr double kApart = 0.02;            ///< rotation between the two [rad]
+constexpr double kLeastIterations = 10.0;  ///< that a second solution may be found
 
 /// Different whole numbers below `size`. The standard leaves its distributions to the library; this
 /// is the same everywhere.
@@ -57,7 +62,7 @@ class Ransac {
         options_(options),
         engine_(seed) {}
 
-  std::optional<RelativePose> run();
+  std::vector<RelativePose> run();
 
  private:
   double cost(const Matrix3d& E) const;
@@ -65,8 +70,10 @@ class Ransac {
   std::optional<Pose> bestDecomposition(const Matrix3d& E) const;
   int countBeforeBoth(const Pose& T_12, const Matrix3d& E) const;
   double iterationsNeeded() const;
-  void markInliers(const Pose& T_12);
-  Pose refined(const Pose& T_12) const;
+  void keep(const Pose& T_12, double T_cost);
+  RelativePose withInliers(const Pose& T_12) const;
+  Pose refined(const RelativePose& start) const;
+  std::optional<RelativePose> finished(const RelativePose& start) const;
 
   const std::vector<BearingPair>& pairs_;
   const Eigen::Quaterniond R_12_gyro_;
@@ -75,6 +82,8 @@ class Ransac {
   std::mt19937_64 engine_;
   std::optional<double> best_cost_;
   RelativePose best_;
+  std::optional<double> second_cost_;
+  Pose second_;
 };
 
 /// Truncated squares (MSAC): P. Torr, A. Zisserman, "MLESAC", CVIU 2000.
@@ -129,24 +138,38 @@ void Ransac::trySample() {
   }
   for (const Matrix3d& E : essentialMatrices(first, second)) {
     const double E_cost = cost(E);
-    if (best_cost_ && E_cost >= *best_cost_) continue;
-    const auto T_12 = bestDecomposition(E);
-    if (!T_12) continue;
-    best_cost_ = E_cost;
-    markInliers(*T_12);
+    if (best_cost_ && E_cost >= kNearlyAsGood * *best_cost_) continue;
+    if (const auto T_12 = bestDecomposition(E)) keep(*T_12, E_cost);
   }
 }
 
-void Ransac::markInliers(const Pose& T_12) {
+/// As the best or as the second, a rotation apart from it.
+void Ransac::keep(const Pose& T_12, double T_cost) {
+  const bool differs = best_cost_ && T_12.rotation.angularDistance(best_.T_12.rotation) > kApart;
+  if (!best_cost_ || T_cost < *best_cost_) {
+    if (differs) {
+      second_ = best_.T_12;
+      second_cost_ = best_cost_;
+    }
+    best_cost_ = T_cost;
+    best_ = withInliers(T_12);
+  } else if (differs && (!second_cost_ || T_cost < *second_cost_)) {
+    second_ = T_12;
+    second_cost_ = T_cost;
+  }
+}
+
+RelativePose Ransac::withInliers(const Pose& T_12) const {
   const Matrix3d E = essential(T_12);
-  best_.T_12 = T_12;
-  best_.inliers.assign(pairs_.size(), false);
-  best_.inlier_count = 0;
+  RelativePose result;
+  result.T_12 = T_12;
+  result.inliers.assign(pairs_.size(), false);
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (std::abs(epipolarResidual(E, pairs_[i])) > options_.inlier_gate) continue;
-    best_.inliers[i] = true;
-    ++best_.inlier_count;
+    result.inliers[i] = true;
+    ++result.inlier_count;
   }
+  return result;
 }
 
 double Ransac::iterationsNeeded() const {
@@ -158,8 +181,8 @@ double Ransac::iterationsNeeded() const {
 
 /// Gauss-Newton in the rotation (on the right) and the direction of the translation; the residuals'
 /// denominators are held in each step.
-Pose Ransac::refined(const Pose& start) const {
-  Pose T_12 = start;
+Pose Ransac::refined(const RelativePose& start) const {
+  Pose T_12 = start.T_12;
   for (int i = 0; i < options_.refinements; ++i) {
     const Matrix3d E = essential(T_12);
     const Matrix3d R = T_12.rotation.toRotationMatrix();
@@ -167,7 +190,7 @@ Pose Ransac::refined(const Pose& start) const {
     Eigen::Matrix<double, 5, 5> H = 1e-9 * Eigen::Matrix<double, 5, 5>::Identity();
     Eigen::Matrix<double, 5, 1> g = Eigen::Matrix<double, 5, 1>::Zero();
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      if (!best_.inliers[k]) continue;
+      if (!start.inliers[k]) continue;
       const BearingPair& pair = pairs_[k];
       const double weight = 1.0 / (pair.sigma * std::hypot((E * pair.first).norm(),
                                                            (E.transpose() * pair.second).norm()));
@@ -182,30 +205,40 @@ Pose Ransac::refined(const Pose& start) const {
       g += J * (weight * pair.first.dot(T_12.position.cross(turned)));
     }
     const Eigen::Matrix<double, 5, 1> step = -H.ldlt().solve(g);
-    if (!step.allFinite()) return start;
+    if (!step.allFinite()) return start.T_12;
     T_12.rotation = (T_12.rotation * so3::exp(step.head<3>())).normalized();
     T_12.position = (T_12.position + sideways * step.tail<2>()).normalized();
   }
   return T_12;
 }
 
-std::optional<RelativePose> Ransac::run() {
+/// Refined on its inliers where that is better; nothing where too few agree.
+std::optional<RelativePose> Ransac::finished(const RelativePose& start) const {
+  RelativePose result = withInliers(refined(start));
+  if (cost(essential(result.T_12)) > cost(essential(start.T_12))) result = start;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (!result.inliers[i] || isBeforeBoth(result.T_12, pairs_[i])) continue;
+    result.inliers[i] = false;
+    --result.inlier_count;
+  }
+  if (result.inlier_count < options_.min_inliers * pairs_.size()) return std::nullopt;
+  return result;
+}
+
+std::vector<RelativePose> Ransac::run() {
   for (int i = 0; i < options_.max_iterations; ++i) {
     trySample();
-    if (best_cost_ && i + 1 >= iterationsNeeded()) break;
+    if (best_cost_ && i + 1 >= std::max(kLeastIterations, iterationsNeeded())) break;
   }
-  if (!best_cost_) return std::nullopt;
-  const RelativePose unrefined = best_;
-  const Pose T_12 = refined(best_.T_12);
-  markInliers(T_12);
-  if (cost(essential(T_12)) > *best_cost_) best_ = unrefined;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    if (!best_.inliers[i] || isBeforeBoth(best_.T_12, pairs_[i])) continue;
-    best_.inliers[i] = false;
-    --best_.inlier_count;
-  }
-  if (best_.inlier_count < options_.min_inliers * pairs_.size()) return std::nullopt;
-  return best_;
+  std::vector<RelativePose> found;
+  if (!best_cost_) return found;
+  if (const auto best = finished(best_)) found.push_back(*best);
+  if (!second_cost_ || *second_cost_ > kNearlyAsGood * *best_cost_) return found;
+  const auto second = finished(withInliers(second_));
+  const bool differs = second && (found.empty() || second->T_12.rotation.angularDistance(
+                                                       found.front().T_12.rotation) > 0.5 * kApart);
+  if (differs) found.push_back(*second);
+  return found;
 }
 
 void fail(const std::string& name, double value, const std::string& allowed) {
@@ -231,11 +264,11 @@ double epipolarResidual(const Matrix3d& E, const BearingPair& pair) {
   return pair.second.dot(normal_2) / (pair.sigma * length);
 }
 
-std::optional<RelativePose> findRelativePose(const std::vector<BearingPair>& pairs,
-                                             const Eigen::Quaterniond& R_12_gyro, double max_angle,
-                                             const RelativePoseOptions& options,
-                                             std::uint64_t seed) {
-  if (pairs.size() < 8) return std::nullopt;
+std::vector<RelativePose> findRelativePoses(const std::vector<BearingPair>& pairs,
+                                            const Eigen::Quaterniond& R_12_gyro, double max_angle,
+                                            const RelativePoseOptions& options,
+                                            std::uint64_t seed) {
+  if (pairs.size() < 8) return {};
   return Ransac(pairs, R_12_gyro, max_angle, options, seed).run();
 }
 

@@ -67,16 +67,10 @@ std::vector<std::size_t> spread(std::size_t size, std::size_t count) {
   return chosen;
 }
 
-Vector15d sigmaAtRest(const RestMeasurement& rest, const Eigen::Quaterniond& R_wb,
-                      const StaticInitializerOptions& options) {
-  // The rotation's error is in the body frame: the share of the vertical there is yaw.
-  const Vector3d up_b = R_wb.conjugate() * Vector3d::UnitZ();
-  const double tilt = options.accelerometer_bias_sigma / rest.specific_force.norm();
-  const double yaw = options.yaw_sigma;
+Vector15d sigmaAtRest(const RestMeasurement& rest, const StaticInitializerOptions& options) {
   Vector15d sigma;
   sigma.segment<3>(kPosition).setConstant(options.position_sigma);
-  sigma.segment<3>(kRotation) =
-      (tilt * tilt * (1.0 - up_b.array().square()) + yaw * yaw * up_b.array().square()).sqrt();
+  sigma.segment<3>(kRotation) << options.tilt_sigma, options.tilt_sigma, options.yaw_sigma;
   sigma.segment<3>(kVelocity).setConstant(options.velocity_sigma);
   sigma.segment<3>(kAccBias).setConstant(options.accelerometer_bias_sigma);
   sigma.segment<3>(kGyrBias).setConstant(
@@ -92,6 +86,7 @@ void StaticInitializerOptions::validate() const {
                      "; allowed: at least 2");
   }
   requirePositive("position_sigma", position_sigma);
+  requirePositive("tilt_sigma", tilt_sigma);
   requirePositive("yaw_sigma", yaw_sigma);
   requirePositive("velocity_sigma", velocity_sigma);
   requirePositive("accelerometer_bias_sigma", accelerometer_bias_sigma);
@@ -118,7 +113,8 @@ std::optional<Initialization> initializeAtRest(
   state.gyroscope_bias = rest.gyroscope_bias;
   Initialization initialization;
   initialization.at_rest = true;
-  initialization.sigma = sigmaAtRest(rest, state.T_wb.rotation, options);
+  initialization.mean = state;
+  initialization.sigma = sigmaAtRest(rest, options);
   const auto chosen = spread(interval.size(), static_cast<std::size_t>(options.frames));
   std::size_t next = 1;
   for (const std::size_t index : chosen) {

@@ -34,12 +34,14 @@ class StructureBuilder {
  private:
   FramePair pairWith(std::size_t older) const;
   std::vector<FramePair> choosePairs();
-  bool solvePair(const FramePair& pair, std::uint64_t seed);
+  std::vector<RelativePose> relativePoses(const FramePair& pair, std::uint64_t seed) const;
+  VisualStructure buildFrom(const FramePair& pair, const RelativePose& relative);
+  void begin(const FramePair& pair, const RelativePose& relative);
   bool resectOthers(std::size_t older);
   bool resect(std::size_t frame, std::size_t neighbour, const Eigen::Vector3d& position);
   void triangulateTracks();
   std::vector<InitialLandmark> landmarks() const;
-  void adjust();
+  void adjust(VisualStructure* structure) const;
   Eigen::Quaterniond gyroRotation(std::size_t from, std::size_t to) const;
 
   const std::vector<StructureFrame>& frames_;
@@ -115,24 +117,26 @@ std::vector<FramePair> StructureBuilder::choosePairs() {
   return pairs;
 }
 
-bool StructureBuilder::solvePair(const FramePair& pair, std::uint64_t seed) {
+std::vector<RelativePose> StructureBuilder::relativePoses(const FramePair& pair,
+                                                          std::uint64_t seed) const {
   const std::size_t newest = frames_.size() - 1;
   const double duration =
       toSeconds(frames_[newest].features->stamp - frames_[pair.older].features->stamp);
   const double max_angle = options_.rotation_tolerance + options_.max_gyroscope_bias * duration;
-  const auto relative = findRelativePose(pair.bearings, gyroRotation(pair.older, newest), max_angle,
-                                         options_.relative_pose, seed);
-  if (!relative) return false;
+  return findRelativePoses(pair.bearings, gyroRotation(pair.older, newest), max_angle,
+                           options_.relative_pose, seed);
+}
+
+void StructureBuilder::begin(const FramePair& pair, const RelativePose& relative) {
   T_sc_.assign(frames_.size(), std::nullopt);
   points_.assign(tracks_.size(), std::nullopt);
   T_sc_[pair.older] = Pose();
-  T_sc_[newest] = relative->T_12;
+  T_sc_.back() = relative.T_12;
   triangulateTracks();
   // What the pair's epipolar geometry rejects is no point, though its rays may pass by chance.
   for (std::size_t i = 0; i < pair.tracks.size(); ++i) {
-    if (!relative->inliers[i]) points_[pair.tracks[i]].reset();
+    if (!relative.inliers[i]) points_[pair.tracks[i]].reset();
   }
-  return true;
 }
 
 /// Triangulates the tracks without a point from the frames whose pose is known.
@@ -207,30 +211,42 @@ std::vector<InitialLandmark> StructureBuilder::landmarks() const {
   return landmarks;
 }
 
-void StructureBuilder::adjust() {
-  result_.landmarks = landmarks();
+void StructureBuilder::adjust(VisualStructure* structure) const {
+  structure->landmarks = landmarks();
   const Pose T_cs = T_sc_.front()->inverse();
-  for (const auto& T_sc : T_sc_) result_.T_sc.push_back(T_cs * *T_sc);
+  for (const auto& T_sc : T_sc_) structure->T_sc.push_back(T_cs * *T_sc);
   const StructureAdjustment adjustment = adjustStructure(
-      options_.max_iterations, options_.outlier_gate, &result_.T_sc, &result_.landmarks);
-  result_.rms = adjustment.rms;
+      options_.max_iterations, options_.outlier_gate, &structure->T_sc, &structure->landmarks);
+  structure->rms = adjustment.rms;
   const bool good = adjustment.usable && adjustment.rms <= options_.max_rms &&
-                    static_cast<int>(result_.landmarks.size()) >= options_.min_landmarks;
-  result_.status = good ? StructureStatus::kOk : StructureStatus::kBadAdjustment;
+                    static_cast<int>(structure->landmarks.size()) >= options_.min_landmarks;
+  structure->status = good ? StructureStatus::kOk : StructureStatus::kBadAdjustment;
+}
+
+VisualStructure StructureBuilder::buildFrom(const FramePair& pair, const RelativePose& relative) {
+  VisualStructure structure;
+  structure.shared = static_cast<int>(pair.bearings.size());
+  structure.parallax = pair.parallax;
+  structure.own_parallax = pair.own_parallax;
+  structure.status = StructureStatus::kLostFrame;
+  begin(pair, relative);
+  if (resectOthers(pair.older)) adjust(&structure);
+  return structure;
 }
 
 VisualStructure StructureBuilder::build() {
   std::uint64_t seed = seed_;
   for (const FramePair& pair : choosePairs()) {
-    result_.shared = static_cast<int>(pair.bearings.size());
-    result_.parallax = pair.parallax;
-    result_.own_parallax = pair.own_parallax;
-    result_.status = StructureStatus::kNoRelativePose;
-    if (!solvePair(pair, seed++)) continue;
-    result_.status = StructureStatus::kLostFrame;
-    if (!resectOthers(pair.older)) continue;
-    adjust();
+    const std::vector<RelativePose> relative_poses = relativePoses(pair, seed++);
+    if (relative_poses.empty() && !result_.ok()) result_.status = StructureStatus::kNoRelativePose;
+    for (const RelativePose& relative : relative_poses) {
+      VisualStructure structure = buildFrom(pair, relative);
+      const bool better = structure.ok() && (!result_.ok() || structure.rms < result_.rms);
+      if (better || !result_.ok()) result_ = std::move(structure);
+    }
     if (result_.ok()) break;
+  }
+  if (!result_.ok()) {
     result_.T_sc.clear();
     result_.landmarks.clear();
   }

@@ -212,9 +212,10 @@ void fixTouchedStates(const Columns& columns, SlidingWindow* window) {
 
 void marginalizeOldest(double huber, SlidingWindow* window) {
   const std::vector<std::int64_t> ids = landmarksToMarginalize(*window);
+  const WindowGeometry geometry = geometryOf(*window);
   std::vector<LinearizedLandmark> landmarks;
   for (const std::int64_t id : ids) {
-    landmarks.push_back(linearize(*window, window->landmarks.tracks().at(id), huber));
+    landmarks.push_back(linearize(*window, geometry, window->landmarks.tracks().at(id), huber));
   }
   const Columns columns = layOut(*window, landmarks);
   fixTouchedStates(columns, window);

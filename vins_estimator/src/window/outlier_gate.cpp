@@ -1,6 +1,5 @@
 #include "vins_estimator/window/outlier_gate.h"
 
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -10,15 +9,14 @@ namespace vins {
 namespace {
 
 /// The frames whose observation of the landmark is beyond the gate.
-std::vector<FrameId> outliersOf(const SlidingWindow& window, const Landmark& landmark,
-                                double max_squared_residual) {
-  // Without a robust loss: the residual itself counts.
-  constexpr double kNoLoss = std::numeric_limits<double>::infinity();
-  const LinearizedLandmark linearized = linearize(window, landmark, kNoLoss);
+std::vector<FrameId> outliersOf(const SlidingWindow& window, const WindowGeometry& geometry,
+                                const Landmark& landmark, double max_squared_residual) {
   std::vector<FrameId> frames;
-  for (std::size_t i = 0; i < linearized.observations.size(); ++i) {
-    const double squared = linearized.observations[i].r.squaredNorm();
-    if (!(squared <= max_squared_residual)) frames.push_back(landmark.observations[i].frame);
+  const std::size_t host = window.indexOf(landmark.host());
+  for (const TrackObservation& o : landmark.observations) {
+    const Eigen::Vector2d r = observationResidual(o.measured, landmark.anchor, geometry, host,
+                                                  window.indexOf(o.frame), landmark.parameters);
+    if (!(r.squaredNorm() <= max_squared_residual)) frames.push_back(o.frame);
   }
   return frames;
 }
@@ -26,6 +24,7 @@ std::vector<FrameId> outliersOf(const SlidingWindow& window, const Landmark& lan
 }  // namespace
 
 int removeOutliers(const OutlierGateOptions& options, SlidingWindow* window) {
+  const WindowGeometry geometry = geometryOf(*window);
   std::vector<std::pair<std::int64_t, FrameId>> outliers;
   for (auto& [id, landmark] : window->landmarks.tracks()) {
     if (!landmark.has_depth) continue;
@@ -34,7 +33,8 @@ int removeOutliers(const OutlierGateOptions& options, SlidingWindow* window) {
       landmark.has_depth = false;
       continue;
     }
-    for (const FrameId frame : outliersOf(*window, landmark, options.max_squared_residual)) {
+    for (const FrameId frame :
+         outliersOf(*window, geometry, landmark, options.max_squared_residual)) {
       outliers.emplace_back(id, frame);
     }
   }

@@ -5,16 +5,19 @@
 namespace vins {
 namespace {
 
-/// A prior of independent errors of the first state. Those of the rotation are about the world's
-/// axes, since yaw and tilt are known differently.
-Prior firstPrior(const NavState& state, const Vector15d& sigma) {
+/// The prior on the first state, written about the value it starts with. The rotation's errors are
+/// about the world's axes, since yaw and tilt are known differently.
+Prior firstPrior(const NavState& first, const NavState& mean, const Vector15d& sigma) {
   Prior prior;
-  prior.parts = {{0, false, state}, {0, true, state}};
+  prior.parts = {{0, false, first}, {0, true, first}};
   prior.A = sigma.cwiseInverse().asDiagonal();
-  prior.A.block<3, 3>(kRotation, kRotation) *= state.T_wb.rotation.toRotationMatrix();
-  prior.b = Eigen::VectorXd::Zero(15);
+  prior.A.block<3, 3>(kRotation, kRotation) *= first.T_wb.rotation.toRotationMatrix();
+  prior.b = prior.A * minus(first, mean);
   return prior;
 }
+
+constexpr std::size_t kViewsWithoutParallax = 3;
+constexpr double kFirstInverseDistance = 0.2;  // [1/m], where nothing is known
 
 bool giveDepth(const CameraPoses& cameras, Landmark* track) {
   std::vector<TriangulationView> views;
@@ -23,10 +26,13 @@ bool giveDepth(const CameraPoses& cameras, Landmark* track) {
                      observation.measured.inverse_sigma});
   }
   const Triangulation result = triangulate(views);
-  if (!result.ok()) return false;
+  // Tracks without parallax tell rotation all the same; their depth is found when they show some.
+  const bool distant = result.status == TriangulationStatus::kLittleParallax &&
+                       track->observations.size() >= kViewsWithoutParallax;
+  if (!result.ok() && !distant) return false;
   const TrackObservation& host = track->observations.front();
   track->anchor = {host.measured.bearing, host.measured.basis};
-  track->parameters = result.landmark;
+  track->parameters = distant ? Eigen::Vector3d(0.0, 0.0, kFirstInverseDistance) : result.landmark;
   track->has_depth = true;
   return true;
 }
@@ -42,7 +48,7 @@ void startWindow(const Initialization& initialization, FrameId first_id, Sliding
     window->frames.push_back(std::move(frame));
   }
   WindowState& first = window->frames.front().state;
-  window->prior = firstPrior(first.value(), initialization.sigma);
+  window->prior = firstPrior(first.value(), initialization.mean, initialization.sigma);
   first.fixPose();
   first.fixMotion();
 }

@@ -34,29 +34,34 @@ struct BearingMeasurement {
   double inverse_sigma = 1.0;                          ///< [1/rad]
 };
 
+/// A frame's body and camera in the world, as matrices.
+struct ViewGeometry {
+  Eigen::Matrix3d R_wb;
+  Eigen::Vector3d p_wb;
+  Eigen::Matrix3d R_wc;
+  Eigen::Vector3d p_wc;
+};
+ViewGeometry viewGeometry(const Pose& T_wb, const Pose& T_bc);
+
 /// Derivatives of a weighted bearing residual.
 struct BearingJacobians {
   Eigen::Matrix<double, 2, 6> J_host;    ///< by the host's pose (position, rotation)
   Eigen::Matrix<double, 2, 6> J_target;  ///< by the observing body's pose
   Eigen::Matrix<double, 2, 3> J_landmark;
-  Eigen::Matrix<double, 2, 6> J_extrinsic;  ///< by T_bc
 };
 
 /// Weighted residual, on the tangent plane at the measured bearing, of a landmark that `host` hosts
 /// and `target` observes (VINS-Mono, equation 17). Jacobians are written where `jacobians` is not
-/// null. `T_wb_host`, `T_wb_target`: body poses.
+/// null.
 Eigen::Vector2d bearingResidual(const BearingMeasurement& measured, const LandmarkAnchor& anchor,
-                                const Pose& T_bc, const Pose& T_wb_host, const Pose& T_wb_target,
+                                const ViewGeometry& host, const ViewGeometry& target,
                                 const LandmarkParameters& landmark, BearingJacobians* jacobians);
 
-/// bearingResidual() at the present poses, its Jacobians at the first estimates of those that have
-/// one.
-Eigen::Vector2d firstEstimatesResidual(const BearingMeasurement& measured,
-                                       const LandmarkAnchor& anchor, const Pose& T_bc,
-                                       const WindowState& host, const Pose& T_wb_host,
-                                       const WindowState& target, const Pose& T_wb_target,
-                                       const LandmarkParameters& landmark,
-                                       BearingJacobians* jacobians);
+/// Derivative of bearingResidual() by T_bc (position, rotation).
+Eigen::Matrix<double, 2, 6> extrinsicJacobian(const BearingMeasurement& measured,
+                                              const LandmarkAnchor& anchor,
+                                              const ViewGeometry& host, const ViewGeometry& target,
+                                              const LandmarkParameters& landmark);
 
 /// Weighted residual of the host's own measurement, and its derivative by the landmark.
 Eigen::Vector2d hostResidual(const BearingMeasurement& measured, const LandmarkAnchor& anchor,

@@ -23,7 +23,8 @@ class Preintegration {
 
   /// Carries on over neighbouring samples, which have rising stamps; the first must be the last one
   /// of the samples before (same stamp), or the very first. `noise_scale`: the white noise of this
-  /// piece is this many times the usual (an interval that lacks samples).
+  /// piece is this many times the usual (an interval that lacks samples). Where the samples show
+  /// vibration, the accelerometer's noise is raised by ImuNoise::vibration_share of it.
   void integrate(const std::vector<ImuSample>& samples, double noise_scale = 1.0);
 
   /// Carries on over the samples of the interval that follows.
@@ -74,7 +75,7 @@ class Preintegration {
     double noise_scale;
   };
   void integratePiece(const Piece& piece);
-  void step(const ImuSample& from, const ImuSample& to, double noise_scale);
+  void step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise);
 
   ImuNoise noise_;
   Eigen::Vector3d accelerometer_bias_;

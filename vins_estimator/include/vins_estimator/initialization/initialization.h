@@ -19,8 +19,11 @@ struct InitialFrame {
 struct Initialization {
   std::vector<InitialFrame> frames;  ///< oldest first; at most as many as the options say
   bool at_rest = false;  ///< all frames stood still: velocities are zero, positions equal
-  Vector15d sigma = Vector15d::Zero();  ///< deviations of the first state's errors, by ErrorState;
-                                        ///< position and yaw are set by convention, not estimated
+  /// What was known of the first state before the frames' own measurements, which the window counts
+  /// itself: mean and deviations of its errors by ErrorState, those of the rotation about the
+  /// world's axes. Position and yaw (about z) are set by convention, not estimated.
+  NavState mean;
+  Vector15d sigma = Vector15d::Ones();
 };
 
 }  // namespace vins

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,14 +38,14 @@ struct RelativePose {
 /// P. D. Sampson's, on the unit sphere.
 double epipolarResidual(const Eigen::Matrix3d& E, const BearingPair& pair);
 
-/// Relative pose by five-point RANSAC with local refinement. Only poses whose rotation lies within
-/// `max_angle` [rad] of `R_12_gyro` are taken (which tells the two solutions of planar scenes
-/// apart), with the scene before both cameras. The same for the same `seed`. Nothing where too few
+/// Relative poses by five-point RANSAC with local refinement: the best one, and perhaps a second
+/// that explains the pairs nearly as well by another rotation, as planar scenes have it (only more
+/// views tell them apart). Only poses whose rotation lies within `max_angle` [rad] of `R_12_gyro`
+/// are taken, with the scene before both cameras. The same for the same `seed`. Empty where too few
 /// pairs agree.
-std::optional<RelativePose> findRelativePose(const std::vector<BearingPair>& pairs,
-                                             const Eigen::Quaterniond& R_12_gyro, double max_angle,
-                                             const RelativePoseOptions& options,
-                                             std::uint64_t seed);
+std::vector<RelativePose> findRelativePoses(const std::vector<BearingPair>& pairs,
+                                            const Eigen::Quaterniond& R_12_gyro, double max_angle,
+                                            const RelativePoseOptions& options, std::uint64_t seed);
 
 /// The rotation R_12 that brings the second bearings nearest to the first, from `start` on, with a
 /// robust loss.

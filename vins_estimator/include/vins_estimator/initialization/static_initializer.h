@@ -13,8 +13,9 @@ namespace vins {
 struct StaticInitializerOptions {
   int frames = 4;                ///< handed over, spread over the still interval; at least 2
   double position_sigma = 1e-3;  ///< the convention's: where the body stands is the origin [m]
+  double tilt_sigma = 0.5;       ///< before the accelerometer is asked, which the window does [rad]
   double yaw_sigma = 1e-3;       ///< the same for yaw [rad]
-  double velocity_sigma = 0.01;  ///< [m/s]
+  double velocity_sigma = 1.0;   ///< before the body is said to be at rest [m/s]
   double accelerometer_bias_sigma = 0.2;   ///< before anything is known of it [m/s^2]
   double min_gyroscope_bias_sigma = 5e-4;  ///< besides what the samples' scatter says [rad/s]
 
@@ -33,8 +34,9 @@ Eigen::Quaterniond withoutYaw(const Eigen::Quaterniond& R_wb);
 /// The first states of a body that has stood still over these frames (oldest first, each with the
 /// samples since the one before; the first one's are not used): roll and pitch from the mean
 /// specific force, gyroscope bias from the mean rate; accelerometer bias zero, with the deviation
-/// that the options say, and with it roll and pitch uncertain by as much over gravity. Nothing
-/// where there are fewer than two frames or no samples.
+/// that the options say. The deviations leave out what the frames' own measurements tell: that they
+/// stand still and feel gravity, which ties tilt and accelerometer bias together. Nothing where
+/// there are fewer than two frames or no samples.
 std::optional<Initialization> initializeAtRest(
     const std::vector<const FrameMeasurements*>& interval, const ImuNoise& noise,
     const StaticInitializerOptions& options = {});

@@ -20,7 +20,7 @@ struct AlignmentOptions {
   double max_rotation_residual = 0.02;  ///< of the gyroscope against the images: rms [rad]
   double max_gravity_error = 0.1;       ///< of its length before that is fixed, share
   double max_linear_scale_sigma = 0.5;  ///< relative, of the linear solution
-  double max_scale_sigma = 0.03;        ///< relative, of the joint refinement
+  double max_scale_sigma = 0.025;       ///< relative, of the joint refinement
   double max_visual_rms = 1.5;          ///< per axis [deviations]
   double max_imu_chi2 = 4.0;            ///< per degree of freedom
   double max_speed = 30.0;              ///< [m/s]
@@ -70,7 +70,7 @@ struct LinearAlignment {
   Eigen::Vector3d v_s = Eigen::Vector3d::Zero();  ///< of the first body, in the structure's frame
   Eigen::Vector3d g_s = Eigen::Vector3d::Zero();  ///< points down [m/s^2]
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();  ///< [m/s^2]
-  double scale = 0.0;           ///< metres per unit
+  double scale = 0.0;                                            ///< metres per unit
   double scale_sigma = 0.0;     ///< relative, by the scatter of the camera positions
   double free_gravity = 0.0;    ///< length before it is fixed [m/s^2]
   double position_sigma = 0.0;  ///< scatter of the camera positions, per axis [unit]
@@ -85,12 +85,12 @@ struct LinearAlignment {
 /// tangent plane until its direction stands, with the bias about zero (deviation `bias_sigma`
 /// [m/s^2]). Nothing where singular.
 std::optional<LinearAlignment> alignLinearly(const std::vector<Pose>& T_sc, const Pose& T_bc,
-                                             const std::vector<Preintegration>& imu,
-                                             double gravity, double bias_sigma);
+                                             const std::vector<Preintegration>& imu, double gravity,
+                                             double bias_sigma);
 
-/// Chi-square that the IMU has added to that of the images alone, per degree of freedom that it adds:
-/// about one or less where the two agree. `structure` and `solution`: before and after the joint
-/// refinement, `squares` of the latter; sightings that it has rejected do not count.
+/// Chi-square that the IMU has added to that of the images alone, per degree of freedom that it
+/// adds: about one or less where the two agree. `structure` and `solution`: before and after the
+/// joint refinement, `squares` of the latter; sightings that it has rejected do not count.
 double addedChiSquare(const VisualStructure& structure, const JointProblem& solution,
                       double squares);
 

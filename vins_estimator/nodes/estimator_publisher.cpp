@@ -1,0 +1,178 @@
+#include "estimator_publisher.h"
+
+#include <algorithm>
+
+#include <nav_msgs/Odometry.h>
+#include <std_msgs/Float64.h>
+#include <visualization_msgs/Marker.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include "estimator_messages.h"
+#include "vins_msgs/Event.h"
+#include "vins_msgs/ImuBias.h"
+#include "vins_msgs/Keyframe.h"
+#include "vins_msgs/KeyframePoseUpdate.h"
+#include "vins_msgs/conversions.h"
+
+namespace vins {
+namespace {
+
+constexpr std::size_t kMaxPathPoses = 20000;  // 16 minutes at 20 Hz
+constexpr std::size_t kMaxHistoryPoints = 100000;
+
+}  // namespace
+
+EstimatorPublisher::EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames,
+                                       const EstimatorOptions& options)
+    : frames_(frames), T_bc_(options.T_bc), td_(options.td) {
+  odometry_ = node.advertise<nav_msgs::Odometry>("odometry", 100);
+  propagated_ = node.advertise<nav_msgs::Odometry>("imu_propagate", 1000);
+  path_topic_ = node.advertise<nav_msgs::Path>("path", 10);
+  cloud_ = node.advertise<sensor_msgs::PointCloud2>("point_cloud", 10);
+  history_topic_ = node.advertise<sensor_msgs::PointCloud2>("history_cloud", 10);
+  key_poses_ = node.advertise<visualization_msgs::Marker>("key_poses", 10);
+  camera_ = node.advertise<nav_msgs::Odometry>("camera_pose", 100);
+  camera_visual_ = node.advertise<visualization_msgs::MarkerArray>("camera_pose_visual", 10);
+  keyframe_ = node.advertise<vins_msgs::Keyframe>("keyframe", 100);
+  left_ = node.advertise<vins_msgs::KeyframePoseUpdate>("keyframe_pose_update", 100);
+  extrinsic_ = node.advertise<nav_msgs::Odometry>("extrinsic", 10);
+  time_offset_ = node.advertise<std_msgs::Float64>("time_offset", 10);
+  bias_ = node.advertise<vins_msgs::ImuBias>("imu_bias", 10);
+  events_ = node.advertise<vins_msgs::Event>("event", 100);
+  path_.header.frame_id = frames_.odom;
+}
+
+void EstimatorPublisher::clear() {
+  path_.poses.clear();
+  history_ = {};
+}
+
+void EstimatorPublisher::publish(const EstimatorResult& result) {
+  for (const Event& event : result.events) events_.publish(vins_msgs::toMsg(event));
+  if (!result.odometry) return;
+  publishOdometry(*result.odometry);
+  publishCamera(*result.odometry);
+  publishBias(*result.odometry);
+  publishTransforms(*result.odometry);
+  publishWindow(result);
+  publishClouds(result);
+  publishKeyframes(result);
+}
+
+void EstimatorPublisher::publish(const PropagatedState& state) {
+  propagated_.publish(toOdometry(state.stamp, state.state, state.angular_velocity_b,
+                                 state.covariance, 0.0, frames_.odom, frames_.body));
+}
+
+void EstimatorPublisher::publishOdometry(const Odometry& odometry) {
+  const nav_msgs::Odometry message =
+      toOdometry(odometry.stamp, odometry.state, odometry.angular_velocity_b, odometry.covariance,
+                 0.0, frames_.odom, frames_.body);
+  odometry_.publish(message);
+  geometry_msgs::PoseStamped pose;
+  pose.header = message.header;
+  pose.pose = message.pose.pose;
+  path_.header.stamp = message.header.stamp;
+  path_.poses.push_back(pose);
+  // Half goes at once, so that the cost is small on average.
+  if (path_.poses.size() > kMaxPathPoses) {
+    path_.poses.erase(path_.poses.begin(), path_.poses.begin() + kMaxPathPoses / 2);
+  }
+  if (path_topic_.getNumSubscribers() > 0) path_topic_.publish(path_);
+}
+
+void EstimatorPublisher::publishCamera(const Odometry& odometry) {
+  nav_msgs::Odometry camera;
+  camera.header.stamp = vins_msgs::toRosTime(odometry.stamp);
+  camera.header.frame_id = frames_.odom;
+  camera.child_frame_id = frames_.camera;
+  camera.pose.pose = vins_msgs::toMsg(odometry.state.T_wb * T_bc_);
+  camera_.publish(camera);
+  visualization_msgs::MarkerArray frustum;
+  frustum.markers.push_back(cameraFrustum(0.4));
+  frustum.markers.front().header = camera.header;
+  frustum.markers.front().pose = camera.pose.pose;
+  camera_visual_.publish(frustum);
+  nav_msgs::Odometry extrinsic;
+  extrinsic.header.stamp = camera.header.stamp;
+  extrinsic.header.frame_id = frames_.body;
+  extrinsic.child_frame_id = frames_.camera;
+  extrinsic.pose.pose = vins_msgs::toMsg(T_bc_);
+  extrinsic_.publish(extrinsic);
+  std_msgs::Float64 td;
+  td.data = td_;
+  time_offset_.publish(td);
+}
+
+void EstimatorPublisher::publishBias(const Odometry& odometry) {
+  ImuBiasEstimate bias;
+  bias.stamp = odometry.stamp;
+  bias.accelerometer = odometry.state.accelerometer_bias;
+  bias.gyroscope = odometry.state.gyroscope_bias;
+  bias.accelerometer_covariance = odometry.covariance.block<3, 3>(kAccBias, kAccBias);
+  bias.gyroscope_covariance = odometry.covariance.block<3, 3>(kGyrBias, kGyrBias);
+  vins_msgs::ImuBias message = vins_msgs::toMsg(bias);
+  message.header.frame_id = frames_.body;
+  bias_.publish(message);
+}
+
+void EstimatorPublisher::publishTransforms(const Odometry& odometry) {
+  const auto transform = [&](const std::string& parent, const std::string& child,
+                             const Pose& pose) {
+    geometry_msgs::TransformStamped message;
+    message.header.stamp = vins_msgs::toRosTime(odometry.stamp);
+    message.header.frame_id = parent;
+    message.child_frame_id = child;
+    message.transform.translation = vins_msgs::toMsg(pose.position);
+    message.transform.rotation = vins_msgs::toMsg(pose).orientation;
+    return message;
+  };
+  transforms_.sendTransform({transform(frames_.odom, frames_.body, odometry.state.T_wb),
+                             transform(frames_.body, frames_.camera, T_bc_)});
+}
+
+void EstimatorPublisher::publishWindow(const EstimatorResult& result) {
+  if (key_poses_.getNumSubscribers() == 0) return;
+  visualization_msgs::Marker marker;
+  marker.header.stamp = vins_msgs::toRosTime(result.stamp);
+  marker.header.frame_id = frames_.odom;
+  marker.ns = "key_poses";
+  marker.type = visualization_msgs::Marker::SPHERE_LIST;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = 0.05;
+  marker.color.r = marker.color.a = 1.0F;
+  for (const StampedNavState& state : result.window) {
+    marker.points.push_back(vins_msgs::toMsg(state.state.T_wb).position);
+  }
+  key_poses_.publish(marker);
+}
+
+void EstimatorPublisher::publishClouds(const EstimatorResult& result) {
+  sensor_msgs::PointCloud2 cloud = toCloud(result.landmarks);
+  cloud.header.stamp = vins_msgs::toRosTime(result.stamp);
+  cloud.header.frame_id = frames_.odom;
+  cloud_.publish(cloud);
+  if (result.keyframes.empty()) return;
+  std::vector<LandmarkPoint> points;
+  for (const KeyframePoint& point : result.keyframes.back().points) {
+    points.push_back({point.id, point.position_w});
+  }
+  append(toCloud(points), kMaxHistoryPoints, &history_);
+  history_.header = cloud.header;
+  if (history_topic_.getNumSubscribers() > 0) history_topic_.publish(history_);
+}
+
+void EstimatorPublisher::publishKeyframes(const EstimatorResult& result) {
+  for (const Keyframe& keyframe : result.keyframes) {
+    vins_msgs::Keyframe message = vins_msgs::toMsg(keyframe);
+    message.header.frame_id = frames_.odom;
+    keyframe_.publish(message);
+  }
+  for (const KeyframePoseUpdate& update : result.left) {
+    vins_msgs::KeyframePoseUpdate message = vins_msgs::toMsg(update);
+    message.header.frame_id = frames_.odom;
+    left_.publish(message);
+  }
+}
+
+}  // namespace vins

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+
+#include <nav_msgs/Path.h>
+#include <ros/ros.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include "vins_estimator/estimator.h"
+#include "vins_estimator/inertial/propagator.h"
+
+namespace vins {
+
+/// Frame names of what is published.
+struct EstimatorFrames {
+  std::string odom = "odom";
+  std::string body = "body";
+  std::string camera = "camera";
+};
+
+/// Turns the estimator's results into messages. Topics live in the node's own namespace, under the
+/// names that VINS-Mono's users know.
+class EstimatorPublisher {
+ public:
+  /// `extrinsic_deviation` is not known yet: the extrinsic goes out without covariance.
+  EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames,
+                     const EstimatorOptions& options);
+
+  /// All that one frame has brought.
+  void publish(const EstimatorResult& result);
+
+  /// The state at an IMU sample.
+  void publish(const PropagatedState& state);
+
+  /// The paths and clouds begin anew.
+  void clear();
+
+ private:
+  void publishOdometry(const Odometry& odometry);
+  void publishCamera(const Odometry& odometry);
+  void publishBias(const Odometry& odometry);
+  void publishTransforms(const Odometry& odometry);
+  void publishWindow(const EstimatorResult& result);
+  void publishClouds(const EstimatorResult& result);
+  void publishKeyframes(const EstimatorResult& result);
+
+  EstimatorFrames frames_;
+  Pose T_bc_;
+  double td_;
+  nav_msgs::Path path_;
+  sensor_msgs::PointCloud2 history_;
+  ros::Publisher odometry_, propagated_, path_topic_, cloud_, history_topic_, key_poses_, camera_,
+      camera_visual_, keyframe_, left_, extrinsic_, time_offset_, bias_, events_;
+  tf2_ros::TransformBroadcaster transforms_;
+};
+
+}  // namespace vins

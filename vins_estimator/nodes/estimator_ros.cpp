@@ -1,0 +1,226 @@
+#include "estimator_ros.h"
+
+#include <utility>
+
+#include "vins_core/input_error.h"
+#include "vins_core/parameters.h"
+#include "vins_msgs/conversions.h"
+
+namespace vins {
+namespace {
+
+constexpr std::size_t kMaxFramesWaiting = 40;  // two seconds at 20 Hz
+constexpr std::size_t kRecentEvents = 5;
+
+Parameters loadConfiguration(const ros::NodeHandle& private_node) {
+  std::string path;
+  if (!private_node.getParam("config_file", path)) {
+    throw InputError("parameter '" + private_node.resolveName("config_file") +
+                     "' is not set; allowed: the path of the rig's YAML file");
+  }
+  return Parameters::load(path);
+}
+
+EstimatorOptions loadOptions(const Parameters& parameters) {
+  const EstimatorOptions options = readEstimatorOptions(parameters);
+  ROS_INFO_STREAM("estimator options:\n" << options);
+  return options;
+}
+
+EstimatorFrames framesOf(const ros::NodeHandle& private_node) {
+  EstimatorFrames frames;
+  private_node.param("odom_frame", frames.odom, frames.odom);
+  private_node.param("body_frame", frames.body, frames.body);
+  private_node.param("camera_frame", frames.camera, frames.camera);
+  return frames;
+}
+
+void log(const Event& event) {
+  if (event.severity == Severity::kError) {
+    ROS_ERROR_STREAM(event);
+  } else if (event.severity == Severity::kWarning) {
+    ROS_WARN_STREAM(event);
+  } else {
+    ROS_INFO_STREAM(event);
+  }
+}
+
+/// Converts, or says what is wrong with the message and drops it.
+template <typename Message>
+auto tryFromMsg(const Message& message) -> std::optional<decltype(vins_msgs::fromMsg(message))> {
+  try {
+    return vins_msgs::fromMsg(message);
+  } catch (const InputError& error) {
+    ROS_ERROR_STREAM_THROTTLE(1.0, "dropped a message: " << error.what());
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node)
+    : options_(loadOptions(loadConfiguration(private_node))),
+      estimator_(options_),
+      publisher_(private_node, framesOf(private_node), options_),
+      propagator_(options_.imu),
+      diagnostics_(node, private_node) {
+  const Parameters parameters = loadConfiguration(private_node);
+  const std::string imu_topic = parameters.text("imu_topic");
+  diagnostics_.setHardwareID("visual-inertial rig");
+  diagnostics_.add("estimator", this, &EstimatorRos::report);
+  const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  imu_ = node.subscribe(imu_topic, 2000, &EstimatorRos::onImu, this, no_delay);
+  features_ =
+      node.subscribe("/feature_tracker/feature", 100, &EstimatorRos::onFeatures, this, no_delay);
+  matches_ = node.subscribe("/pose_graph/loop_match", 100, &EstimatorRos::onLoopMatch, this);
+  restarts_ = node.subscribe("/feature_tracker/restart", 10, &EstimatorRos::onRestart, this);
+  reset_ = private_node.advertiseService("reset", &EstimatorRos::onReset, this);
+  timer_ = node.createTimer(ros::Duration(1.0),
+                            [this](const ros::TimerEvent&) { diagnostics_.update(); });
+  worker_ = std::thread([this] { work(); });
+}
+
+EstimatorRos::~EstimatorRos() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  arrived_.notify_one();
+  worker_.join();
+}
+
+void EstimatorRos::onImu(const sensor_msgs::Imu::ConstPtr& message) {
+  Input input;
+  input.imu = tryFromMsg(*message);
+  if (!input.imu) return;
+  {
+    const std::lock_guard<std::mutex> lock(propagator_mutex_);
+    const std::optional<PropagatedState> state = propagator_.addImu(*input.imu);
+    if (state) publisher_.publish(*state);
+  }
+  push(std::move(input));
+}
+
+void EstimatorRos::onFeatures(const vins_msgs::FeatureFrame::ConstPtr& message) {
+  Input input;
+  input.frame = tryFromMsg(*message);
+  if (input.frame) push(std::move(input));
+}
+
+void EstimatorRos::onLoopMatch(const vins_msgs::LoopMatch::ConstPtr& message) {
+  Input input;
+  input.match = tryFromMsg(*message);
+  if (input.match) push(std::move(input));
+}
+
+void EstimatorRos::onRestart(const std_msgs::Bool::ConstPtr& message) {
+  if (!message->data) return;
+  Input input;
+  input.restart = true;
+  push(std::move(input));
+}
+
+bool EstimatorRos::onReset(std_srvs::Trigger::Request& /*request*/,
+                           std_srvs::Trigger::Response& response) {
+  Input input;
+  input.restart = true;
+  push(std::move(input));
+  response.success = true;
+  response.message = "the estimator starts anew";
+  return true;
+}
+
+void EstimatorRos::push(Input input) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (input.frame) {
+      // Falling behind for good: new frames are left out, the IMU goes on.
+      if (frames_waiting_ >= kMaxFramesWaiting) {
+        ++frames_dropped_;
+        return;
+      }
+      ++frames_waiting_;
+    }
+    queue_.push_back(std::move(input));
+  }
+  arrived_.notify_one();
+}
+
+void EstimatorRos::work() {
+  while (true) {
+    std::deque<Input> inputs;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      arrived_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
+      if (stopping_) return;
+      inputs.swap(queue_);
+    }
+    for (Input& input : inputs) {
+      handle(&input);
+      handleResults();
+    }
+  }
+}
+
+void EstimatorRos::handle(Input* input) {
+  if (input->restart) restart();
+  if (input->imu) estimator_.addImu(*input->imu);
+  if (input->match) estimator_.addLoopMatch(*input->match);
+  if (input->frame) {
+    estimator_.addFrame(*input->frame);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    --frames_waiting_;
+  }
+}
+
+void EstimatorRos::handleResults() {
+  while (const std::optional<EstimatorResult> result = estimator_.process()) handle(*result);
+}
+
+void EstimatorRos::handle(const EstimatorResult& result) {
+  for (const Event& event : result.events) log(event);
+  if (result.odometry) {
+    const Stamp solved = result.odometry->stamp + toNanoseconds(options_.td);
+    const std::lock_guard<std::mutex> lock(propagator_mutex_);
+    propagator_.setState(solved, result.odometry->state, result.odometry->covariance);
+  }
+  publisher_.publish(result);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  latest_ = result;
+  for (const Event& event : result.events) recent_.push_back(event);
+  while (recent_.size() > kRecentEvents) recent_.pop_front();
+}
+
+void EstimatorRos::restart() {
+  ROS_WARN("starting anew");
+  estimator_.reset();
+  publisher_.clear();
+  const std::lock_guard<std::mutex> lock(propagator_mutex_);
+  propagator_.reset();
+}
+
+void EstimatorRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  using diagnostic_msgs::DiagnosticStatus;
+  if (latest_.status == EstimatorStatus::kTracking) {
+    status.summary(DiagnosticStatus::OK, "tracking");
+  } else {
+    const char* advice =
+        "initializing: move the camera sideways and up and down, with texture in view";
+    status.summary(DiagnosticStatus::WARN, advice);
+  }
+  if (latest_.statistics.features < options_.min_tracks) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "too few features: is the lens free, is there light?");
+  }
+  status.add("state", toString(latest_.status));
+  status.add("features", latest_.statistics.features);
+  status.add("landmarks", latest_.statistics.landmarks);
+  status.add("solve time [ms]", 1e3 * latest_.statistics.solve_seconds);
+  status.add("marginalization time [ms]", 1e3 * latest_.statistics.marginalize_seconds);
+  status.add("frames waiting", frames_waiting_);
+  status.add("frames dropped", frames_dropped_);
+  for (const Event& event : recent_) status.add("event " + event.code, event.text);
+}
+
+}  // namespace vins

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <optional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Imu.h>
+#include <std_msgs/Bool.h>
+#include <std_srvs/Trigger.h>
+
+#include "estimator_publisher.h"
+#include "vins_estimator/estimator.h"
+#include "vins_estimator/inertial/propagator.h"
+#include "vins_msgs/FeatureFrame.h"
+#include "vins_msgs/LoopMatch.h"
+
+namespace vins {
+
+/// The estimator's ROS face, shared by node and nodelet. Callbacks only queue; one worker solves.
+/// An IMU sample goes through the propagator in its own callback, so that odometry at the IMU's
+/// rate never waits for the solver.
+///
+/// Private parameters: `config_file` (the rig's YAML; needed), `odom_frame`, `body_frame`,
+/// `camera_frame`. Service: `~reset`.
+class EstimatorRos {
+ public:
+  /// Throws InputError for a configuration that is missing or malformed.
+  EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node);
+  EstimatorRos(const EstimatorRos&) = delete;
+  EstimatorRos& operator=(const EstimatorRos&) = delete;
+  ~EstimatorRos();
+
+ private:
+  /// What callbacks hand to the worker, in the order of arrival.
+  struct Input {
+    std::optional<ImuSample> imu;
+    std::optional<FeatureFrame> frame;
+    std::optional<LoopMatch> match;
+    bool restart = false;
+  };
+
+  void onImu(const sensor_msgs::Imu::ConstPtr& message);
+  void onFeatures(const vins_msgs::FeatureFrame::ConstPtr& message);
+  void onLoopMatch(const vins_msgs::LoopMatch::ConstPtr& message);
+  void onRestart(const std_msgs::Bool::ConstPtr& message);
+  bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+
+  void push(Input input);
+  void work();
+  void handle(Input* input);
+  void handleResults();
+  void handle(const EstimatorResult& result);
+  void restart();
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  EstimatorOptions options_;
+  Estimator estimator_;  // the worker's alone
+  EstimatorPublisher publisher_;
+
+  std::mutex propagator_mutex_;
+  Propagator propagator_;
+
+  std::mutex mutex_;  // of the queue and the latest figures
+  std::condition_variable arrived_;
+  std::deque<Input> queue_;
+  std::size_t frames_waiting_ = 0;
+  std::size_t frames_dropped_ = 0;
+  bool stopping_ = false;
+  EstimatorResult latest_;
+  std::deque<Event> recent_;
+
+  diagnostic_updater::Updater diagnostics_;
+  ros::Subscriber imu_, features_, matches_, restarts_;
+  ros::ServiceServer reset_;
+  ros::Timer timer_;
+  std::thread worker_;
+};
+
+}  // namespace vins

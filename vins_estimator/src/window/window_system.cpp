@@ -1,0 +1,286 @@
+#include "vins_estimator/window/window_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "vins_estimator/factors/imu_factor.h"
+
+namespace vins {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+NavState linearizationPoint(const WindowState& state, const NavState& value) {
+  NavState at = state.motionForJacobians(value);
+  at.T_wb = state.poseForJacobians(value.T_wb);
+  return at;
+}
+
+/// Huber's loss of a residual's length.
+double robustCost(double huber, double length) {
+  return length <= huber ? 0.5 * length * length : huber * (length - 0.5 * huber);
+}
+
+}  // namespace
+
+WindowSystem::WindowSystem(const SlidingWindow& window, double huber)
+    : window_(window), huber_(huber) {
+  std::map<FrameId, std::size_t> index;
+  for (std::size_t i = 0; i < window.frames.size(); ++i) index[window.frames[i].id] = i;
+  for (const auto& [id, landmark] : window.landmarks.tracks()) {
+    if (!landmark.has_depth) continue;
+    const std::size_t begin = observations_.size();
+    for (const TrackObservation& observation : landmark.observations) {
+      observations_.push_back({&observation, index.at(observation.frame)});
+    }
+    landmarks_.push_back({&landmark, observations_[begin].target, begin, observations_.size()});
+  }
+  W_.resize(observations_.size());
+  eliminations_.resize(landmarks_.size());
+  preparePrior();
+}
+
+WindowSystem::Point WindowSystem::present() const {
+  Point point;
+  for (const WindowFrame& frame : window_.frames) point.states.push_back(frame.state.value());
+  for (const FlatLandmark& flat : landmarks_) point.landmarks.push_back(flat.landmark->parameters);
+  return point;
+}
+
+void WindowSystem::writeTo(const Point& point, SlidingWindow* window) const {
+  for (std::size_t i = 0; i < point.states.size(); ++i) {
+    window->frames[i].state.setValue(point.states[i]);
+  }
+  for (std::size_t k = 0; k < landmarks_.size(); ++k) {
+    window->landmarks.tracks().at(landmarks_[k].landmark->id).parameters = point.landmarks[k];
+  }
+}
+
+Index WindowSystem::motionColumn(std::size_t frame) { return static_cast<Index>(9 * frame); }
+
+Index WindowSystem::poseColumn(std::size_t frame) const {
+  return static_cast<Index>(9 * frameCount() + 6 * frame);
+}
+
+Index WindowSystem::column(const Prior::Part& part) const {
+  return part.motion ? motionColumn(part.frame) : poseColumn(part.frame);
+}
+
+void WindowSystem::preparePrior() {
+  const auto size = static_cast<Index>(15 * frameCount());
+  prior_information_ = MatrixXd::Zero(size, size);
+  const MatrixXd information = window_.prior.A.transpose() * window_.prior.A;
+  Index row = 0;
+  for (const Prior::Part& a : window_.prior.parts) {
+    Index col = 0;
+    for (const Prior::Part& b : window_.prior.parts) {
+      prior_information_.block(column(a), column(b), a.size(), b.size()) =
+          information.block(row, col, a.size(), b.size());
+      col += b.size();
+    }
+    row += a.size();
+  }
+}
+
+double WindowSystem::bearingCost(const Point& point) const {
+  const WindowGeometry geometry = geometryOf(window_, point.states);
+  double cost = 0.0;
+  for (std::size_t index = 0; index < landmarks_.size(); ++index) {
+    const FlatLandmark& flat = landmarks_[index];
+    for (std::size_t k = flat.begin; k < flat.end; ++k) {
+      const Eigen::Vector2d r =
+          observationResidual(observations_[k].observation->measured, flat.landmark->anchor,
+                              geometry, flat.host, observations_[k].target, point.landmarks[index]);
+      cost += robustCost(huber_, r.norm());
+    }
+  }
+  return cost;
+}
+
+VectorXd WindowSystem::priorResidual(const Point& point) const {
+  const Prior& prior = window_.prior;
+  VectorXd d(prior.columns());
+  Index row = 0;
+  for (const Prior::Part& part : prior.parts) {
+    d.segment(row, part.size()) = priorDifference(part, point.states[part.frame]);
+    row += part.size();
+  }
+  return prior.A * d + prior.b;
+}
+
+double WindowSystem::cost(const Point& point) const {
+  double cost = bearingCost(point);
+  for (std::size_t i = 1; i < frameCount(); ++i) {
+    const Preintegration& imu = window_.frames[i].imu;
+    const Vector15d r = imuResidual(imu, window_.g_w, point.states[i - 1], point.states[i]);
+    cost += 0.5 * (imu.sqrtInformation() * r).squaredNorm();
+  }
+  for (std::size_t i = 0; i < frameCount(); ++i) {
+    if (!window_.frames[i].stands_still) continue;
+    cost += 0.5 * (point.states[i].v_w / window_.still_velocity).squaredNorm();
+  }
+  if (!window_.prior.empty()) cost += 0.5 * priorResidual(point).squaredNorm();
+  return cost;
+}
+
+bool WindowSystem::linearize(const Point& point) {
+  at_ = point;
+  geometry_ = geometryOf(window_, point.states);
+  const auto size = static_cast<Index>(15 * frameCount());
+  H_ = prior_information_;
+  g_ = VectorXd::Zero(size);
+  for (std::size_t k = 0; k < landmarks_.size(); ++k) addLandmark(k);
+  for (std::size_t i = 1; i < frameCount(); ++i) addImu(i);
+  for (std::size_t i = 0; i < frameCount(); ++i) addStillness(i);
+  addPrior();
+  llt_.compute(H_);
+  if (llt_.info() != Eigen::Success) return false;
+  y_ = llt_.matrixL().solve(g_);
+  return y_.allFinite();
+}
+
+void WindowSystem::addLandmark(std::size_t index) {
+  const FlatLandmark& landmark = landmarks_[index];
+  Eigen::Matrix3d H_ll = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g_l = Eigen::Vector3d::Zero();
+  Matrix63d W_host = Matrix63d::Zero();
+  const Index host = poseColumn(landmark.host);
+  for (std::size_t k = landmark.begin; k < landmark.end; ++k) {
+    LinearizedObservation o = linearizeObservation(
+        observations_[k].observation->measured, landmark.landmark->anchor, geometry_, landmark.host,
+        observations_[k].target, at_.landmarks[index]);
+    scaleByLoss(huber_, &o);
+    H_ll += o.J_landmark.transpose() * o.J_landmark;
+    g_l += o.J_landmark.transpose() * o.r;
+    if (k == landmark.begin) continue;
+    W_host += o.J_host.transpose() * o.J_landmark;
+    W_[k] = o.J_target.transpose() * o.J_landmark;
+    const Index target = poseColumn(o.target);
+    H_.block<6, 6>(host, host) += o.J_host.transpose() * o.J_host;
+    H_.block<6, 6>(target, target) += o.J_target.transpose() * o.J_target;
+    // The lower triangle only; the host stands before every target.
+    H_.block<6, 6>(target, host) += o.J_target.transpose() * o.J_host;
+    g_.segment<6>(host) += o.J_host.transpose() * o.r;
+    g_.segment<6>(target) += o.J_target.transpose() * o.r;
+  }
+  W_[landmark.begin] = W_host;
+  H_ll.diagonal().array() += kLandmarkDamping;
+  eliminations_[index] = {H_ll.inverse(), g_l};
+  eliminate(index);
+}
+
+void WindowSystem::eliminate(std::size_t index) {
+  const FlatLandmark& landmark = landmarks_[index];
+  const Elimination& elimination = eliminations_[index];
+  for (std::size_t a = landmark.begin; a < landmark.end; ++a) {
+    const Matrix63d left = W_[a] * elimination.H_inverse;
+    const Index row = poseColumn(observations_[a].target);
+    g_.segment<6>(row) -= left * elimination.g;
+    for (std::size_t b = landmark.begin; b <= a; ++b) {
+      H_.block<6, 6>(row, poseColumn(observations_[b].target)) -= left * W_[b].transpose();
+    }
+  }
+}
+
+void WindowSystem::addImu(std::size_t frame) {
+  const WindowState& from = window_.frames[frame - 1].state;
+  const WindowState& to = window_.frames[frame].state;
+  const Preintegration& imu = window_.frames[frame].imu;
+  const NavState& value_i = at_.states[frame - 1];
+  const NavState& value_j = at_.states[frame];
+  const ImuJacobians J = imuJacobians(imu, window_.g_w, linearizationPoint(from, value_i),
+                                      linearizationPoint(to, value_j));
+  // Motions i and j, then poses i and j: as the system has them.
+  Eigen::Matrix<double, 15, 30> whole;
+  whole << J.J_motion_i, J.J_motion_j, J.J_pose_i, J.J_pose_j;
+  whole = (imu.sqrtInformation() * whole).eval();
+  const Vector15d r = imu.sqrtInformation() * imuResidual(imu, window_.g_w, value_i, value_j);
+  const Index motion = motionColumn(frame - 1);
+  const Index pose = poseColumn(frame - 1);
+  const auto J_motion = whole.leftCols<18>();
+  const auto J_pose = whole.rightCols<12>();
+  H_.block<18, 18>(motion, motion) += J_motion.transpose() * J_motion;
+  H_.block<12, 18>(pose, motion) += J_pose.transpose() * J_motion;
+  H_.block<12, 12>(pose, pose) += J_pose.transpose() * J_pose;
+  g_.segment<18>(motion) += J_motion.transpose() * r;
+  g_.segment<12>(pose) += J_pose.transpose() * r;
+}
+
+void WindowSystem::addStillness(std::size_t frame) {
+  if (!window_.frames[frame].stands_still) return;
+  const double weight = 1.0 / (window_.still_velocity * window_.still_velocity);
+  const Index velocity = motionColumn(frame);
+  H_.diagonal().segment<3>(velocity).array() += weight;
+  g_.segment<3>(velocity) += weight * at_.states[frame].v_w;
+}
+
+void WindowSystem::addPrior() {
+  if (window_.prior.empty()) return;
+  const VectorXd g = window_.prior.A.transpose() * priorResidual(at_);
+  Index row = 0;
+  for (const Prior::Part& part : window_.prior.parts) {
+    g_.segment(column(part), part.size()) += g.segment(row, part.size());
+    row += part.size();
+  }
+}
+
+MatrixXd WindowSystem::sqrtInformation() const {
+  const auto poses = static_cast<Index>(6 * frameCount());
+  const auto L = llt_.matrixLLT().bottomRightCorner(poses, poses);
+  return MatrixXd(L.triangularView<Eigen::Lower>()).transpose();
+}
+
+VectorXd WindowSystem::sqrtGradient() const {
+  return y_.tail(static_cast<Index>(6 * frameCount()));
+}
+
+WindowSystem::Point WindowSystem::moved(const VectorXd& pose_steps) const {
+  const auto motions = static_cast<Index>(9 * frameCount());
+  const auto L = llt_.matrixLLT();
+  // L_mm^T d_m = -(y_m + L_pm^T d_p)
+  VectorXd motion_steps = -(
+      y_.head(motions) + L.bottomLeftCorner(L.rows() - motions, motions).transpose() * pose_steps);
+  L.topLeftCorner(motions, motions)
+      .triangularView<Eigen::Lower>()
+      .transpose()
+      .solveInPlace(motion_steps);
+  Point point = at_;
+  for (std::size_t i = 0; i < frameCount(); ++i) {
+    Vector15d d;
+    d << pose_steps.segment<6>(static_cast<Index>(6 * i)), motion_steps.segment<9>(motionColumn(i));
+    point.states[i] = plus(at_.states[i], d);
+  }
+  for (std::size_t k = 0; k < landmarks_.size(); ++k) {
+    Eigen::Vector3d g = eliminations_[k].g;
+    for (std::size_t a = landmarks_[k].begin; a < landmarks_[k].end; ++a) {
+      g += W_[a].transpose() *
+           pose_steps.segment<6>(static_cast<Index>(6 * observations_[a].target));
+    }
+    point.landmarks[k] -= eliminations_[k].H_inverse * g;
+  }
+  return point;
+}
+
+Matrix15d WindowSystem::newestCovariance() const {
+  const std::size_t newest = frameCount() - 1;
+  Eigen::MatrixXd selection = MatrixXd::Zero(H_.rows(), 15);
+  selection.block<6, 6>(poseColumn(newest), 0).setIdentity();
+  selection.block<9, 9>(motionColumn(newest), 6).setIdentity();
+  llt_.matrixL().solveInPlace(selection);
+  return selection.transpose() * selection;
+}
+
+MatrixXd WindowSystem::information() const {
+  const MatrixXd whole = H_.selfadjointView<Eigen::Lower>();
+  std::vector<Index> order;
+  for (std::size_t frame = 0; frame < frameCount(); ++frame) {
+    for (Index i = 0; i < 6; ++i) order.push_back(poseColumn(frame) + i);
+    for (Index i = 0; i < 9; ++i) order.push_back(motionColumn(frame) + i);
+  }
+  return whole(order, order);
+}
+
+}  // namespace vins
