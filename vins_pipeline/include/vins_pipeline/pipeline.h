@@ -1,0 +1,89 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "camera_model/camera.h"
+#include "feature_tracker/feature_tracker.h"
+#include "feature_tracker/tracker_options.h"
+#include "vins_core/event.h"
+#include "vins_core/imu.h"
+#include "vins_core/parameters.h"
+#include "vins_core/pose.h"
+#include "vins_core/time.h"
+#include "vins_estimator/estimator.h"
+#include "vins_estimator/estimator_options.h"
+#include "vins_pipeline/run_record.h"
+
+namespace vins {
+
+/// What the stages are made of.
+struct PipelineOptions {
+  std::vector<std::shared_ptr<const Camera>> cameras;
+  FeatureTrackerOptions tracker;
+  EstimatorOptions estimator;
+  cv::Mat mask;  ///< CV_8UC1, 0 where no corner may be; or empty
+  std::string imu_topic = "/imu0";
+  std::vector<std::string> image_topics = {"/cam0/image_raw"};
+};
+
+/// Reads a rig's configuration file: camera, tracker, estimator, topics. Throws InputError naming
+/// file and key. `warnings`, which may be null, gets a line for each key that nothing asked for.
+PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings);
+
+/// What came of one image.
+struct PipelineResult {
+  Stamp stamp = 0;  ///< the image's [ns]
+  TrackerStatistics tracker;
+  int features = 0;                        ///< handed to the estimator
+  std::vector<EstimatorResult> estimates;  ///< of this frame, or of those before that had waited
+  std::vector<Event> events;               ///< of all stages, in their order
+  std::vector<std::pair<std::string, Duration>> durations;  ///< stage by stage
+};
+
+/// All stages in one process and one thread: samples and images in, the state out. What comes out
+/// depends on what goes in, not on when: an image waits for the IMU samples up to its time.
+class Pipeline {
+ public:
+  /// Throws InputError for bad options.
+  explicit Pipeline(const PipelineOptions& options);
+
+  void addImu(const ImuSample& sample);
+
+  /// An image of the first camera, CV_8UC1.
+  void addImage(Stamp stamp, const cv::Mat& image);
+
+  /// Works on the oldest image whose samples have come; nothing where there is none. Call until it
+  /// returns nothing.
+  std::optional<PipelineResult> process();
+
+  /// The input has ended: images no longer wait for samples.
+  void finish() { finished_ = true; }
+
+ private:
+  struct WaitingImage {
+    Stamp stamp;
+    cv::Mat image;
+  };
+
+  bool isReady(const WaitingImage& image) const;
+  std::vector<ImuSample> samplesUpTo(Stamp stamp);
+  void track(const WaitingImage& image, PipelineResult* result);
+  void estimate(PipelineResult* result);
+
+  FeatureTracker tracker_;
+  Estimator estimator_;
+  Stamp offset_;                   ///< td [ns]
+  std::deque<ImuSample> samples_;  ///< not yet handed to the tracker
+  std::deque<WaitingImage> images_;
+  std::optional<Stamp> newest_imu_;
+  bool finished_ = false;
+};
+
+}  // namespace vins

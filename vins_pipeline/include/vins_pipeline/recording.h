@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "vins_core/imu.h"
+#include "vins_core/pose.h"
+#include "vins_core/time.h"
+
+namespace vins {
+
+/// An image of a recording, decoded when asked for.
+struct RecordedImage {
+  int camera = 0;   ///< index of its topic in the selection
+  Stamp stamp = 0;  ///< [ns]
+  /// The image in grey values, CV_8UC1. Throws InputError naming file, topic and stamp where it
+  /// cannot be decoded. May be called as long as the recording is there.
+  std::function<cv::Mat()> load;
+};
+
+/// The body's true pose; without a rotation where a laser tracker has measured.
+struct RecordedTruth {
+  Stamp stamp = 0;  ///< [ns]
+  Pose T_wb;
+  bool has_rotation = true;
+};
+
+/// One message of a recording.
+struct Record {
+  Stamp arrival = 0;  ///< when it was recorded [ns]
+  std::variant<ImuSample, RecordedImage, RecordedTruth> data;
+};
+
+/// What to take of a recording.
+struct RecordingSelection {
+  std::string imu_topic = "/imu0";
+  std::vector<std::string> image_topics = {"/cam0/image_raw"};  ///< one per camera
+  double start = 0.0;              ///< after the rig's first selected message [s]
+  std::optional<double> duration;  ///< [s]; nothing: to the end
+
+  /// Throws InputError naming the value that is out of range.
+  void validate() const;
+};
+
+/// What a recording has, in the selected span.
+struct RecordingSummary {
+  std::string name;  ///< the path it was opened by
+  Stamp begin = 0;   ///< of the span, by arrival [ns]
+  Stamp end = 0;     ///< of the span, by arrival [ns]
+  std::size_t images = 0;
+  std::size_t imu_samples = 0;
+  std::size_t truth_poses = 0;
+  std::string truth_source;  ///< topic or folder of the ground truth; empty where there is none
+
+  double duration() const { return toSeconds(end - begin); }
+};
+
+/// A recorded flight: a stream of its messages in the order of their arrival.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+
+  const RecordingSummary& summary() const { return summary_; }
+
+  /// The next message; nothing at the end. Throws InputError where the file is broken.
+  virtual std::optional<Record> next() = 0;
+
+ protected:
+  RecordingSummary summary_;
+};
+
+/// A folder in the ASL layout (EuRoC's): topics are /camN/image_raw, at N the topic's own number or
+/// else its place in the selection; the IMU's topic is of no meaning. Images that are listed but
+/// not there are left out. Throws InputError naming what is missing, or a span that holds nothing.
+std::unique_ptr<Recording> openAslRecording(const std::string& folder,
+                                            const RecordingSelection& selection);
+
+}  // namespace vins

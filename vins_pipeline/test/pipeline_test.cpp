@@ -1,0 +1,135 @@
+#include "vins_pipeline/pipeline.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "vins_core/input_error.h"
+
+namespace vins {
+namespace {
+
+constexpr char kConfig[] = "../config/euroc/euroc_config.yaml";
+constexpr Stamp kMs = 1'000'000;
+constexpr Stamp kStart = 1'600'000'000'000 * kMs;
+
+PipelineOptions options() { return readPipelineOptions(kConfig, nullptr); }
+
+/// Grey squares in random places, moved to the left from image to image.
+cv::Mat imageAt(int index) {
+  cv::RNG random(7);
+  cv::Mat image(480, 752, CV_8UC1, cv::Scalar(20));
+  for (int i = 0; i < 400; ++i) {
+    const int x = random.uniform(0, 730) - 2 * index, y = random.uniform(0, 460);
+    const cv::Rect square = cv::Rect(x, y, 14, 14) & cv::Rect(0, 0, 752, 480);
+    image(square).setTo(random.uniform(60, 250));
+  }
+  return image;
+}
+
+ImuSample sampleAt(Stamp stamp) { return {stamp, {9.81, 0.0, 0.0}, {0.0, 0.0, 0.0}}; }
+
+std::vector<PipelineResult> processAll(Pipeline* pipeline) {
+  std::vector<PipelineResult> results;
+  while (auto result = pipeline->process()) results.push_back(std::move(*result));
+  return results;
+}
+
+TEST(Pipeline, AnImageWaitsForItsSamples) {
+  Pipeline pipeline(options());
+  pipeline.addImage(kStart + 100 * kMs, imageAt(0));
+  EXPECT_FALSE(pipeline.process());
+  for (int i = 0; i < 20; ++i) pipeline.addImu(sampleAt(kStart + i * 5 * kMs));
+  EXPECT_FALSE(pipeline.process());
+  pipeline.addImu(sampleAt(kStart + 100 * kMs));
+  const auto result = pipeline.process();
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->stamp, kStart + 100 * kMs);
+  EXPECT_GT(result->features, 100);
+  EXPECT_EQ(result->estimates.size(), 1u);
+  EXPECT_EQ(result->durations.front().first, "tracker");
+  EXPECT_FALSE(pipeline.process());
+}
+
+TEST(Pipeline, WhatComesOutDoesNotDependOnWhenItCameIn) {
+  Pipeline early(options()), late(options());
+  std::vector<PipelineResult> first, second;
+  const auto collect = [](Pipeline* pipeline, std::vector<PipelineResult>* all) {
+    for (PipelineResult& result : processAll(pipeline)) all->push_back(std::move(result));
+  };
+  // One gets images as soon as they are there, the other all samples first.
+  for (int i = 0; i <= 200; ++i) {
+    const Stamp now = kStart + i * 5 * kMs;
+    if (i % 10 == 0) early.addImage(now, imageAt(i / 10));
+    collect(&early, &first);
+    early.addImu(sampleAt(now));
+    collect(&early, &first);
+    late.addImu(sampleAt(now));
+  }
+  for (int i = 0; i <= 20; ++i) late.addImage(kStart + i * 50 * kMs, imageAt(i));
+  collect(&late, &second);
+  ASSERT_EQ(first.size(), 21u);
+  ASSERT_EQ(second.size(), 21u);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].stamp, second[i].stamp);
+    EXPECT_EQ(first[i].features, second[i].features);
+    EXPECT_EQ(first[i].tracker.inliers, second[i].tracker.inliers);
+    EXPECT_GT(first[i].tracker.inliers, i == 0 ? -1 : 50) << "the images can be tracked";
+    ASSERT_EQ(first[i].estimates.size(), second[i].estimates.size());
+  }
+}
+
+TEST(Pipeline, AtTheEndImagesNoLongerWait) {
+  Pipeline pipeline(options());
+  pipeline.addImage(kStart, imageAt(0));
+  EXPECT_FALSE(pipeline.process());
+  pipeline.finish();
+  const auto result = pipeline.process();
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->estimates.empty()) << "the estimator cannot do without samples";
+}
+
+TEST(Pipeline, ARestartedRecordingDoesNotBlock) {
+  Pipeline pipeline(options());
+  for (int i = 0; i <= 40; ++i) pipeline.addImu(sampleAt(kStart + (60'000 + i * 5) * kMs));
+  pipeline.addImage(kStart + 60'190 * kMs, imageAt(0));
+  // Would wait for samples that never come.
+  pipeline.addImage(kStart + 60'240 * kMs, imageAt(1));
+  EXPECT_EQ(processAll(&pipeline).size(), 1u);
+  for (int i = 0; i <= 40; ++i) pipeline.addImu(sampleAt(kStart + i * 5 * kMs));
+  pipeline.addImage(kStart + 100 * kMs, imageAt(2));
+  pipeline.addImage(kStart + 150 * kMs, imageAt(3));
+  EXPECT_EQ(processAll(&pipeline).size(), 2u);
+}
+
+TEST(PipelineOptions, TheConfigurationOfEurocIsKnownKeyByKey) {
+  std::vector<std::string> warnings;
+  const PipelineOptions read = readPipelineOptions(kConfig, &warnings);
+  for (const std::string& warning : warnings) ADD_FAILURE() << warning;
+  EXPECT_EQ(read.imu_topic, "/imu0");
+  EXPECT_EQ(read.image_topics, std::vector<std::string>{"/cam0/image_raw"});
+  EXPECT_EQ(read.cameras.at(0)->imageSize(), (ImageSize{752, 480}));
+  EXPECT_EQ(read.estimator.imu.accelerometer_noise, 2.0e-3);
+  EXPECT_EQ(read.tracker.frequency, 0.0);
+  EXPECT_TRUE(read.mask.empty());
+}
+
+TEST(PipelineOptions, UnknownKeysAndMissingFilesAreNamed) {
+  const std::string path = ::testing::TempDir() + "pipeline_test.yaml";
+  std::ifstream in(kConfig);
+  std::ofstream(path) << std::string(std::istreambuf_iterator<char>(in), {}) << "max_cn: 3\n";
+  std::vector<std::string> warnings;
+  readPipelineOptions(path, &warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("'max_cn' is ignored; did you mean 'max_cnt'"), std::string::npos);
+  std::filesystem::remove(path);
+  EXPECT_THROW(readPipelineOptions(path, nullptr), InputError);
+}
+
+}  // namespace
+}  // namespace vins

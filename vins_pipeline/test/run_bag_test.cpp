@@ -1,0 +1,161 @@
+// The program, run as a user runs it.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <sys/wait.h>
+
+#include "vins_core/parameters.h"
+#include "vins_core/testing/shared_data.h"
+#include "vins_pipeline/bag_writer.h"
+
+namespace fs = std::filesystem;
+
+namespace vins {
+namespace {
+
+const char* const kConfig = "../config/euroc/euroc_config.yaml";
+
+struct Outcome {
+  int exit_code = 0;
+  std::string output;
+};
+
+std::string textOf(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class RunBag : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path path(const std::string& name) const { return folder_ / name; }
+
+  Outcome run(const std::string& arguments, const std::string& before = "") const {
+    const fs::path tool = fs::read_symlink("/proc/self/exe").parent_path() / "run_bag";
+    const fs::path log = folder_ / "log.txt";
+    const std::string command =
+        before + tool.string() + " " + arguments + " > " + log.string() + " 2>&1";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), textOf(log)};
+  }
+
+  /// A quarter of a second of noise from a rig that lies still: too short to start from.
+  std::string writeBag(const std::string& name, cv::Size size = {752, 480}) const {
+    BagWriter bag(path(name).string());
+    cv::Mat image(size, CV_8UC1);
+    cv::RNG random(3);
+    random.fill(image, cv::RNG::UNIFORM, 0, 255);
+    for (int i = 0; i <= 50; ++i) {
+      const Stamp now = 1'600'000'000'000'000'000 + i * Stamp{5'000'000};
+      bag.writeImu(now, {now, {9.81, 0.0, 0.0}, {0.0, 0.0, 0.0}});
+      bag.writeGroundTruth(now, now, {});
+      if (i % 10 == 0) bag.writeImage(topic::kCamera0, now, now, image);
+    }
+    bag.finish();
+    return path(name).string();
+  }
+
+ private:
+  fs::path folder_ = fs::path(::testing::TempDir()) / "run_bag_test";
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(RunBag, ARecordingTooShortToStartIsToldByTheExitCodeAndWrittenAllTheSame) {
+  const std::string bag = writeBag("short.bag");
+  const fs::path out = path("new/folder");
+  const Outcome outcome = run(std::string(kConfig) + " " + bag + " --out " + out.string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "initialised   never")) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "6 images, 51 IMU samples")) << outcome.output;
+  EXPECT_TRUE(fs::exists(out / "vio_live.txt"));
+  EXPECT_TRUE(fs::exists(out / "vins_result_no_loop.csv"));
+  EXPECT_TRUE(contains(textOf(out / "events.csv"), "#stamp [ns],severity"));
+  const Parameters timing = Parameters::load((out / "timing.json").string());
+  EXPECT_EQ(timing.section("stages").section("tracker").integer("count"), 6);
+  EXPECT_NEAR(timing.number("data_seconds"), 0.25, 1e-6);
+}
+
+TEST_F(RunBag, ErrorsTellWhatIsWrongBeforeAnythingIsWritten) {
+  const std::string bag = writeBag("a.bag");
+  const std::string small = writeBag("small.bag", {320, 240});
+  std::string other_topic = textOf(kConfig);
+  other_topic.replace(other_topic.find("\"/imu0\""), 7, "\"/imu\"");
+  std::ofstream(path("topic.yaml")) << other_topic;
+  std::ofstream(path("bad.yaml")) << textOf(kConfig) << "\nwindow_size: 2\n";
+  const std::string config = kConfig;
+  const struct {
+    std::string arguments;
+    std::string expected;
+  } cases[] = {
+      {config, "the option '--bag' is required"},
+      {config + " " + bag + " --speed 2", "unrecognised option '--speed'"},
+      {"/no/config.yaml " + bag, "/no/config.yaml: cannot be opened"},
+      {path("bad.yaml").string() + " " + bag, "key 'window_size': found '2'; allowed"},
+      {config + " /no/such.bag", "/no/such.bag: is not there"},
+      {path("topic.yaml").string() + " " + bag, "has no topic '/imu'; it has /cam0/image_raw"},
+      {config + " " + bag + " --start 9", "nothing from second 9 on"},
+      {config + " " + bag + " --duration 0", "duration: found 0"},
+      {config + " " + kConfig, "cannot be read as a bag"}};
+  for (const auto& c : cases) {
+    const Outcome outcome = run(c.arguments + " --out " + path("out").string());
+    EXPECT_EQ(outcome.exit_code, 1) << c.arguments << "\n" << outcome.output;
+    EXPECT_TRUE(contains(outcome.output, c.expected)) << outcome.output;
+    EXPECT_FALSE(fs::exists(path("out"))) << c.arguments;
+  }
+  const Outcome outcome = run(config + " " + small + " --out " + path("out").string());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(contains(outcome.output,
+                       "found images of 320x240; allowed by the configuration's "
+                       "camera: 752x480"))
+      << outcome.output;
+}
+
+TEST_F(RunBag, AFolderThatCannotBeMadeIsAnError) {
+  const std::string bag = writeBag("a.bag");
+  const Outcome outcome = run(std::string(kConfig) + " " + bag + " --out " + bag);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(contains(outcome.output, "a.bag: cannot be made")) << outcome.output;
+}
+
+TEST_F(RunBag, HelpNamesExitCodes) {
+  const Outcome outcome = run("--help");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(contains(outcome.output, "Exit code: 0")) << outcome.output;
+}
+
+TEST_F(RunBag, TwoRunsGiveTheSameBytes) {
+  const std::string flight = testing::sharedData("euroc_mh01_flight");
+  VINS_SKIP_WITHOUT(flight);
+  const std::string arguments = std::string(kConfig) + " " + flight + " --duration 8 --out ";
+  const Outcome first = run(arguments + path("first").string());
+  const Outcome second = run(arguments + path("second").string());
+  EXPECT_EQ(first.exit_code, second.exit_code) << first.output;
+  EXPECT_EQ(textOf(path("first/vio_live.txt")), textOf(path("second/vio_live.txt")));
+  EXPECT_EQ(textOf(path("first/events.csv")), textOf(path("second/events.csv")));
+}
+
+TEST_F(RunBag, AnInterruptedRunWritesWhatItHas) {
+  const std::string flight = testing::sharedData("euroc_mh01_flight");
+  VINS_SKIP_WITHOUT(flight);
+  const Outcome outcome =
+      run(std::string(kConfig) + " " + flight + " --out " + path("out").string(),
+          "timeout --preserve-status -s INT 2 ");
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "when interrupted")) << outcome.output;
+  EXPECT_TRUE(fs::exists(path("out/timing.json")));
+  EXPECT_TRUE(fs::exists(path("out/vio_live.txt")));
+}
+
+}  // namespace
+}  // namespace vins

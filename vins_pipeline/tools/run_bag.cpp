@@ -1,0 +1,321 @@
+// Visual-inertial odometry on a recording: a bag or an ASL folder in, trajectory and figures out.
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <boost/program_options.hpp>
+#include <opencv2/core.hpp>
+
+#include "interrupt.h"
+#include "trajectory_report.h"
+#include "vins_core/input_error.h"
+#include "vins_core/progress_bar.h"
+#include "vins_core/text_file.h"
+#include "vins_core/trajectory_file.h"
+#include "vins_pipeline/bag_recording.h"
+#include "vins_pipeline/pipeline.h"
+#include "vins_pipeline/run_record.h"
+#include "vins_pipeline/run_results.h"
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+
+namespace {
+
+enum ExitCode { kDone = 0, kBadInput = 1, kNotTracking = 2, kInterrupted = 130 };
+
+/// A run in the making.
+struct Run {
+  vins::PipelineOptions options;
+  std::unique_ptr<vins::Recording> recording;
+  vins::RunRecord record;
+  vins::RunResults results;
+  vins::Stamp reached = 0;  ///< by arrival [ns]
+  bool interrupted = false;
+};
+
+vins::RecordingSelection selectionOf(const po::variables_map& values,
+                                     const vins::PipelineOptions& options) {
+  vins::RecordingSelection selection;
+  selection.imu_topic = options.imu_topic;
+  selection.image_topics = options.image_topics;
+  selection.start = values["start"].as<double>();
+  if (values.count("duration") > 0) selection.duration = values["duration"].as<double>();
+  return selection;
+}
+
+vins::PipelineOptions readConfig(const std::string& path) {
+  std::vector<std::string> warnings;
+  vins::PipelineOptions options = vins::readPipelineOptions(path, &warnings);
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
+  // The result must not depend on the computer's speed.
+  options.estimator.max_solver_time = 0.0;
+  return options;
+}
+
+void requireImageSize(const cv::Mat& image, const Run& run) {
+  const vins::ImageSize size = run.options.cameras[0]->imageSize();
+  if (image.cols == size.width && image.rows == size.height) return;
+  throw vins::InputError(run.recording->summary().name + ": found images of " +
+                         std::to_string(image.cols) + "x" + std::to_string(image.rows) +
+                         "; allowed by the configuration's camera: " + std::to_string(size.width) +
+                         "x" + std::to_string(size.height));
+}
+
+void feed(const vins::Record& message, vins::Pipeline* pipeline, Run* run) {
+  if (const auto* sample = std::get_if<vins::ImuSample>(&message.data)) {
+    pipeline->addImu(*sample);
+  } else if (const auto* truth = std::get_if<vins::RecordedTruth>(&message.data)) {
+    run->results.add(*truth);
+  } else {
+    const auto& image = std::get<vins::RecordedImage>(message.data);
+    const vins::StopWatch watch;
+    const cv::Mat pixels = image.load();
+    run->record.addDuration("read", watch.elapsed());
+    requireImageSize(pixels, *run);
+    pipeline->addImage(image.stamp, pixels);
+  }
+}
+
+/// Wall clock and CPU time of both stages together, where both have worked.
+void addFrameDuration(const vins::PipelineResult& result, vins::RunRecord* record) {
+  vins::Duration frame;
+  int stages = 0;
+  for (const auto& [stage, duration] : result.durations) {
+    record->addDuration(stage, duration);
+    if (stage.find('/') != std::string::npos) continue;
+    frame.wall += duration.wall;
+    frame.cpu += duration.cpu;
+    ++stages;
+  }
+  if (stages > 1) record->addDuration("tracker+estimator", frame);
+}
+
+void work(vins::Pipeline* pipeline, Run* run) {
+  while (const auto result = pipeline->process()) {
+    addFrameDuration(*result, &run->record);
+    run->record.addEvents(result->events);
+    run->results.add(*result);
+  }
+}
+
+std::string noteOf(const Run& run) {
+  const double seconds = vins::toSeconds(run.reached - run.recording->summary().begin);
+  std::ostringstream note;
+  note << std::fixed << std::setprecision(1) << seconds << " s, "
+       << seconds / std::max(run.record.elapsed().wall, 1e-9) << "x real time, "
+       << run.results.state();
+  return note.str();
+}
+
+void process(vins::Interrupt* interrupt, Run* run) {
+  constexpr vins::Stamp kMillisecond = 1'000'000;
+  const vins::RecordingSummary& summary = run->recording->summary();
+  const auto shareOf = [&](vins::Stamp arrival) {
+    return static_cast<std::size_t>(std::max<vins::Stamp>(0, arrival - summary.begin) /
+                                    kMillisecond);
+  };
+  vins::Pipeline pipeline(run->options);
+  auto bar = vins::ProgressBar::onStandardError("odometry", shareOf(summary.end));
+  while (const auto message = run->recording->next()) {
+    run->interrupted = interrupt->isRequested();
+    if (run->interrupted) break;
+    run->reached = message->arrival;
+    feed(*message, &pipeline, run);
+    work(&pipeline, run);
+    bar.update(shareOf(run->reached), noteOf(*run));
+  }
+  if (!run->interrupted) {
+    pipeline.finish();
+    work(&pipeline, run);
+  }
+  bar.finish(noteOf(*run));
+}
+
+double secondsDone(const Run& run) {
+  return vins::toSeconds(run.reached - run.recording->summary().begin);
+}
+
+/// The ground truth as a file that covers this run, or as it was given; "" where there is none.
+std::string prepareTruth(const std::string& given, const fs::path& folder, const Run& run) {
+  const std::string path = (folder / "ground_truth.txt").string();
+  std::string text = run.results.groundTruth();
+  if (!given.empty()) {
+    if (!fs::is_regular_file(given)) return given;
+    text.clear();
+    const auto& summary = run.recording->summary();
+    const vins::Trajectory truth = vins::readTrajectoryFile(given);
+    for (const vins::StampedPose& pose : truth.poses()) {
+      const bool is_inside = pose.stamp >= summary.begin && pose.stamp <= run.reached;
+      if (is_inside) text += vins::toTumLine(pose) + "\n";
+    }
+    if (text.empty()) {
+      throw vins::InputError(given + ": has no pose in the time of the recording, from " +
+                             std::to_string(summary.begin) + " to " + std::to_string(run.reached) +
+                             " ns");
+    }
+  }
+  if (text.empty()) return "";
+  vins::writeTextFile(path, text);
+  return path;
+}
+
+void writeFiles(const fs::path& folder, const Run& run) {
+  const auto write = [&](const char* name, const std::string& text) {
+    vins::writeTextFile((folder / name).string(), text);
+  };
+  write("vio_live.txt", run.results.vioLive());
+  write("vins_result_no_loop.csv", run.results.vinsMonoCsv());
+  write("timing.json", run.record.timingJson(secondsDone(run)));
+  write("events.csv", run.record.eventsCsv());
+}
+
+void printWarnings(const vins::RunResults& results) {
+  if (results.warnings().empty()) return;
+  std::cout << "warnings      ";
+  const char* separator = "";
+  for (const auto& [code, count] : results.warnings()) {
+    std::cout << separator << code << " " << count;
+    separator = ", ";
+  }
+  std::cout << " (see events.csv)\n";
+}
+
+void printSummary(const Run& run, const fs::path& folder) {
+  const vins::RecordingSummary& summary = run.recording->summary();
+  const vins::RunResults& results = run.results;
+  const double wall = run.record.elapsed().wall;
+  std::cout << std::fixed << std::setprecision(2) << "recording     " << summary.name << ": "
+            << summary.duration() << " s, " << summary.images << " images, " << summary.imu_samples
+            << " IMU samples\n";
+  if (results.initialisedAfter()) {
+    std::cout << "initialised   " << *results.initialisedAfter() << " s after the first image\n";
+  } else {
+    std::cout << "initialised   never\n";
+  }
+  std::cout << "odometry      " << results.odometries() << " of " << results.frames()
+            << " frames, path " << results.pathLength() << " m, " << results.resets() << " resets, "
+            << (results.isTracking() ? "tracking" : "not tracking")
+            << (run.interrupted ? " when interrupted\n" : " at the end\n");
+  printWarnings(results);
+  std::cout << "speed         " << secondsDone(run) << " s in " << wall
+            << " s: " << secondsDone(run) / std::max(wall, 1e-9) << "x real time, peak memory "
+            << vins::peakMemoryMb() << " MB\n"
+            << "written to    " << folder.string()
+            << ": vio_live.txt, vins_result_no_loop.csv, timing.json, events.csv\n\n"
+            << run.record.timingTable();
+}
+
+void makeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && fs::is_directory(folder)) return;
+  throw vins::InputError(folder.string() + ": cannot be made: " +
+                         (error ? error.message() : std::string("a file of that name is there")));
+}
+
+void report(const po::variables_map& values, const fs::path& folder, const Run& run) {
+  const std::string truth = prepareTruth(values["ground-truth"].as<std::string>(), folder, run);
+  if (truth.empty() || run.results.odometries() == 0) return;
+  std::cout << "\n";
+  const bool is_made = vins::makeReport(
+      {truth, (folder / "vio_live.txt").string(), values["align"].as<std::string>(),
+       (folder / "report.html").string(), (folder / "evaluation.json").string()});
+  if (is_made) std::cout << "report        " << (folder / "report.html").string() << "\n";
+}
+
+void requireAlignment(const std::string& name) {
+  for (const char* known : {"none", "posyaw", "se3", "sim3"}) {
+    if (name == known) return;
+  }
+  throw vins::InputError("--align: found '" + name + "'; allowed: none, posyaw, se3, sim3");
+}
+
+int runBag(const po::variables_map& values) {
+  requireAlignment(values["align"].as<std::string>());
+  // One thread: the same bytes everywhere, and the CPU time of the work itself.
+  cv::setNumThreads(1);
+  Run run;
+  run.options = readConfig(values["config"].as<std::string>());
+  run.recording =
+      vins::openRecording(values["bag"].as<std::string>(), selectionOf(values, run.options));
+  run.reached = run.recording->summary().begin;
+  const fs::path folder = values["out"].as<std::string>();
+  makeFolder(folder);
+  {
+    // Until the files are written, nothing ends the program half-way.
+    vins::Interrupt interrupt;
+    process(&interrupt, &run);
+    writeFiles(folder, run);
+  }
+  printSummary(run, folder);
+  if (run.interrupted) return kInterrupted;
+  report(values, folder, run);
+  return run.results.odometries() > 0 && run.results.isTracking() ? kDone : kNotTracking;
+}
+
+po::options_description describeOptions() {
+  po::options_description options("Options");
+  auto add = options.add_options();
+  add("help", "print this text");
+  add("config", po::value<std::string>()->required(),
+      "configuration of the rig, in VINS-Mono's form");
+  add("bag", po::value<std::string>()->required(), "a ROS bag, or a folder in the ASL layout");
+  add("out", po::value<std::string>()->default_value("run_bag_output"),
+      "folder to write to; it is made");
+  add("start", po::value<double>()->default_value(0.0), "how much to skip at the start [s]");
+  add("duration", po::value<double>(), "[s]; to the end if not given");
+  add("ground-truth", po::value<std::string>()->default_value(""),
+      "poses to compare with (TUM, EuRoC csv, ASL folder, FILE.bag:/topic); if not given, those "
+      "of the recording");
+  add("align", po::value<std::string>()->default_value("posyaw"),
+      "for the comparison: none, posyaw, se3, sim3");
+  add("no-loop", po::bool_switch(), "odometry only, without loop closure");
+  return options;
+}
+
+void printHelp(const po::options_description& options) {
+  std::cout
+      << "Visual-inertial odometry on a recording, as fast as the machine allows. Nothing is\n"
+         "dropped, and the same recording gives the same bytes.\n"
+         "Usage: run_bag CONFIG BAG [options]\n"
+         "Example: run_bag config/euroc/euroc_config.yaml MH_01_easy.bag --out mh01\n\n"
+      << options
+      << "\nWritten to the folder: vio_live.txt (TUM, each pose as it was known at its\n"
+         "frame), vins_result_no_loop.csv (VINS-Mono's form), timing.json, events.csv and,\n"
+         "with ground truth, ground_truth.txt, report.html, evaluation.json.\n"
+         "Exit code: 0 initialised and tracking to the end, 1 bad input, 2 never initialised\n"
+         "or lost at the end, 130 interrupted (what was done so far is written).\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const po::options_description options = describeOptions();
+    po::positional_options_description positional;
+    positional.add("config", 1).add("bag", 1);
+    po::variables_map values;
+    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
+              values);
+    if (values.count("help") > 0) {
+      printHelp(options);
+      return kDone;
+    }
+    po::notify(values);
+    return runBag(values);
+  } catch (const po::error& error) {
+    std::cerr << "run_bag: " << error.what() << "; see --help\n";
+  } catch (const std::exception& error) {
+    std::cerr << "run_bag: " << error.what() << "\n";
+  }
+  return kBadInput;
+}

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vins {
+
+/// What to evaluate.
+struct TrajectoryReport {
+  std::string ground_truth;  ///< in any form that evaluate_trajectory reads
+  std::string estimate;      ///< likewise
+  std::string alignment = "posyaw";
+  std::string html;  ///< page to write
+  std::string json;  ///< figures to write
+};
+
+/// The program evaluate_trajectory of the package vins_tests: beside this program's own package, or
+/// on PATH. Empty where it is not to be found.
+std::string findEvaluation();
+
+/// Runs a program with the console of this one. Its exit code; 128 + n where signal n ended it,
+/// 127 where it could not be run.
+int runProgram(const std::vector<std::string>& arguments);
+
+/// Prints figures and writes the page; tells in one line why it does not. True where it does.
+bool makeReport(const TrajectoryReport& report);
+
+}  // namespace vins
