@@ -39,6 +39,12 @@ InitializerOptions initializerOptions(const EstimatorOptions& options) {
   return result;
 }
 
+MeasurementQueueOptions queueOptions() {
+  MeasurementQueueOptions options;
+  options.max_frames = 200;  // ten seconds without the IMU
+  return options;
+}
+
 void moveEvents(std::vector<Event> events, EstimatorResult* result) {
   for (Event& event : events) result->events.push_back(std::move(event));
 }
@@ -53,6 +59,7 @@ class Estimator::Implementation {
  public:
   explicit Implementation(const EstimatorOptions& options)
       : options_(options),
+        queue_(queueOptions()),
         initializer_(initializerOptions(options)),
         stillness_(initializerOptions(options).stillness) {
     clearWindow();
@@ -67,6 +74,7 @@ class Estimator::Implementation {
     EstimatorResult result;
     result.stamp = measurements->frame.stamp;
     moveEvents(queue_.takeEvents(), &result);
+    tellWhatIsNotEstimated(&result);
     if (measurements->restarted) reset();
     if (status_ == EstimatorStatus::kTracking && !isCredible(*measurements, &result)) reset();
     stillness_.addFrame(measurements->frame, measurements->imu);
@@ -88,6 +96,20 @@ class Estimator::Implementation {
   }
 
  private:
+  /// Once: the configuration wants more than there is.
+  void tellWhatIsNotEstimated(EstimatorResult* result) {
+    const bool wanted = options_.extrinsic != ExtrinsicMode::kTrusted || options_.estimate_td ||
+                        options_.rolling_shutter_readout > 0.0;
+    if (!wanted || told_) return;
+    told_ = true;
+    result->events.push_back(
+        {result->stamp,
+         Severity::kWarning,
+         "not_estimated",
+         "extrinsic, td and rolling shutter are not estimated yet: they are taken as configured",
+         {}});
+  }
+
   void clearWindow() {
     window_ = SlidingWindow{};
     window_.landmarks = Landmarks(options_.pixel_noise);
@@ -118,7 +140,7 @@ class Estimator::Implementation {
       for (WindowFrame& frame : window_.frames) frame.state.ignoreFirstEstimates();
     }
     status_ = EstimatorStatus::kTracking;
-    adjust(result);
+    if (!adjust(result)) return;
     report(measurements, result);
     result->events.push_back(
         {result->stamp,
@@ -131,13 +153,7 @@ class Estimator::Implementation {
 
   void track(const FrameMeasurements& measurements, EstimatorResult* result) {
     appendFrame(measurements);
-    adjust(result);
-    if (!isFinite(window_.frames.back().state.value())) {
-      result->events.push_back(
-          {result->stamp, Severity::kError, "reset", "the solution is not finite", {}});
-      reset();
-      return;
-    }
+    if (!adjust(result)) return;
     report(measurements, result);
     slide(result);
   }
@@ -157,7 +173,8 @@ class Estimator::Implementation {
     window_.frames.push_back(std::move(frame));
   }
 
-  void adjust(EstimatorResult* result) {
+  /// Solves the window; where that fails, starts anew and returns false.
+  bool adjust(EstimatorResult* result) {
     triangulateTracks(&window_);
     const StopWatch watch;
     WindowSolverOptions solver;
@@ -173,6 +190,21 @@ class Estimator::Implementation {
     statistics.outliers = removeOutliers({}, &window_);
     statistics.solve_seconds = watch.seconds();
     window_.frames.back().covariance = summary.newest_covariance;
+    if (summary.timed_out) {
+      result->events.push_back({result->stamp,
+                                Severity::kWarning,
+                                "solver_time",
+                                "max_solver_time has cut a solution short: the machine is too slow",
+                                {{"iterations", static_cast<double>(summary.iterations)}}});
+    }
+    if (summary.usable && isFinite(window_.frames.back().state.value())) return true;
+    result->events.push_back({result->stamp,
+                              Severity::kError,
+                              "reset",
+                              "the window has no finite solution; starting anew",
+                              {{"landmarks", static_cast<double>(summary.landmarks)}}});
+    reset();
+    return false;
   }
 
   void report(const FrameMeasurements& measurements, EstimatorResult* result) {
@@ -269,6 +301,7 @@ class Estimator::Implementation {
   FrameId next_frame_id_ = 0;
   std::int64_t next_keyframe_id_ = 0;
   std::uint32_t sequence_ = 0;
+  bool told_ = false;
 };
 
 Estimator::Estimator(const EstimatorOptions& options) {

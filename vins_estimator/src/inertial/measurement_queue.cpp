@@ -53,6 +53,9 @@ MeasurementQueue::MeasurementQueue(const MeasurementQueueOptions& options)
 void MeasurementQueue::addImu(const ImuSample& sample) {
   if (acceptImu(sample)) {
     imu_.push_back(sample);
+    // Without frames nothing else would forget samples.
+    constexpr double kLongest = 60.0;  // [s]
+    while (toSeconds(sample.stamp - imu_.front().stamp) > kLongest) imu_.pop_front();
     newest_imu_ = sample.stamp;
     // Until a first frame has come, only what may lead to one is worth keeping.
     if (frames_.empty() && !end_) forgetUntil(sample.stamp - 2 * toNanoseconds(options_.lead_in));
