@@ -197,6 +197,27 @@ std::optional<double> scaleError(const Positions& estimated, const Positions& tr
   return squaredSpread(estimated) / values.sum() - 1.0;
 }
 
+namespace {
+
+void judgeRig(const OdometryRun& run, OdometryFigures* figures) {
+  const Vector7d error = minus(run.true_rig, run.rig);
+  figures->extrinsic_translation_error = error.head<3>().norm();
+  figures->extrinsic_rotation_error = error.segment<3>(3).norm();
+  figures->td_error = std::abs(error(6));
+  // What was taken as exact has next to no variance.
+  std::vector<Eigen::Index> estimated;
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    if (run.rig_covariance(i, i) > 1e-16) estimated.push_back(i);
+  }
+  if (estimated.empty()) return;
+  const Eigen::VectorXd part = error(estimated);
+  const Eigen::MatrixXd covariance = run.rig_covariance(estimated, estimated);
+  figures->nees_rig =
+      part.dot(covariance.llt().solve(part)) / static_cast<double>(estimated.size());
+}
+
+}  // namespace
+
 OdometryFigures evaluate(const OdometryRun& run) {
   OdometryFigures figures;
   figures.seed = run.seed;
@@ -208,6 +229,7 @@ OdometryFigures evaluate(const OdometryRun& run) {
   const auto sequences =
       run.samples.back().estimate.sequence - run.samples.front().estimate.sequence;
   figures.resets = sequences;
+  judgeRig(run, &figures);
   judgeByAlignment(run, &figures);
   judgeByGauge(run, &figures);
   return figures;

@@ -38,6 +38,9 @@ struct OdometryRun {
   std::vector<OdometrySample> samples;  ///< one for each odometry
   std::vector<double> frame_seconds;    ///< work of the estimator on each frame [s]
   std::vector<Event> events;
+  RigCalibration rig;        ///< as last estimated
+  RigCalibration true_rig;   ///< as simulated
+  Matrix7d rig_covariance = Matrix7d::Zero();  ///< zero where the rig was not estimated
 };
 
 /// Normalised estimation error squared (NEES), averaged over a run, per degree of freedom: 1 is
@@ -66,6 +69,10 @@ struct OdometryFigures {
   double rotation_error = 0.0;              ///< RMSE after posyaw alignment [rad]
   double drift = 0.0;  ///< last position's error, with the gauge laid on the truth [m]
   Consistency nees;
+  double td_error = 0.0;                     ///< by its size, at the end [s]
+  double extrinsic_rotation_error = 0.0;     ///< at the end [rad]
+  double extrinsic_translation_error = 0.0;  ///< at the end [m]
+  double nees_rig = 0.0;   ///< of what was estimated of the rig, at the end, per degree of freedom
   double uncovered = 0.0;  ///< share of samples whose covariance is not positive definite
   double mean_ms = 0.0;    ///< of the estimator per frame [ms]
   double p95_ms = 0.0;     ///< [ms]

@@ -90,6 +90,7 @@ class Flight {
         estimator_(estimatorOptions(options, seed)),
         features_(motion_, eurocCamera(0), options.T_bc, withSeed(options.features, seed)) {
     run_.seed = seed;
+    run_.true_rig = {options.T_bc, options.time_offset};
   }
 
   OdometryRun fly() {
@@ -122,6 +123,8 @@ class Flight {
 
   void work() {
     while (const auto result = estimator_.process()) {
+      run_.rig = result->rig;
+      run_.rig_covariance = result->rig_covariance;
       run_.events.insert(run_.events.end(), result->events.begin(), result->events.end());
       if (result->odometry) keep(*result);
     }

@@ -58,6 +58,12 @@ std::vector<Column> allColumns() {
           column("nees_velocity", "N vel", &Consistency::velocity),
           column("nees_accelerometer_bias", "N ba", &Consistency::accelerometer_bias),
           column("nees_gyroscope_bias", "N bg", &Consistency::gyroscope_bias),
+          column("td_error_s", "td ms", 1e-3, 2, &F::td_error),
+          column("extrinsic_rotation_error_rad", "R_bc deg", degree, 3,
+                 &F::extrinsic_rotation_error),
+          column("extrinsic_translation_error_m", "p_bc mm", 1e-3, 1,
+                 &F::extrinsic_translation_error),
+          column("nees_rig", "N rig", 1.0, 2, &F::nees_rig),
           column("uncovered", "no cov%", 0.01, 1, &F::uncovered),
           column("mean_ms", "ms", 1.0, 2, &F::mean_ms),
           column("p95_ms", "p95 ms", 1.0, 2, &F::p95_ms)};

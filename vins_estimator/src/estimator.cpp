@@ -1,33 +1,22 @@
 #include "vins_estimator/estimator.h"
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "vins_estimator/health/continuation.h"
+#include "vins_estimator/health/failure_detector.h"
 #include "vins_estimator/health/stillness.h"
+#include "vins_estimator/health/track_watch.h"
 #include "vins_estimator/inertial/measurement_queue.h"
+#include "vins_estimator/initialization/extrinsic_rotation.h"
 #include "vins_estimator/initialization/initializer.h"
-#include "vins_estimator/visual/keyframe_choice.h"
-#include "vins_estimator/window/marginalization.h"
-#include "vins_estimator/window/outlier_gate.h"
-#include "vins_estimator/window/sliding_window.h"
-#include "vins_estimator/window/window_solver.h"
-#include "vins_estimator/window/window_start.h"
+#include "vins_estimator/visual/rolling_shutter.h"
+#include "window_tracker.h"
 
 namespace vins {
 namespace {
-
-/// Seconds that a piece of work takes, for the statistics.
-class StopWatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 InitializerOptions initializerOptions(const EstimatorOptions& options) {
   InitializerOptions result;
@@ -45,8 +34,26 @@ MeasurementQueueOptions queueOptions() {
   return options;
 }
 
+TurnCalibratorOptions calibratorOptions(const EstimatorOptions& options) {
+  TurnCalibratorOptions result;
+  result.pixel_noise = options.pixel_noise;
+  if (options.extrinsic == ExtrinsicMode::kUnknown) result.prior.rotation_sigma = 0.0;
+  if (options.extrinsic == ExtrinsicMode::kRefined) {
+    result.prior.rotation_sigma = options.extrinsic_rotation_sigma;
+  }
+  if (options.estimate_td) result.prior.td_sigma = options.td_sigma;
+  return result;
+}
+
 void moveEvents(std::vector<Event> events, EstimatorResult* result) {
   for (Event& event : events) result->events.push_back(std::move(event));
+}
+
+/// Mean rate over the samples, as a turn over their time.
+Eigen::Vector3d meanRate(const std::vector<ImuSample>& samples) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const ImuSample& sample : samples) sum += sample.angular_velocity;
+  return samples.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(samples.size()));
 }
 
 }  // namespace
@@ -60,23 +67,32 @@ class Estimator::Implementation {
   explicit Implementation(const EstimatorOptions& options)
       : options_(options),
         queue_(queueOptions()),
+        calibrator_(calibratorOptions(options), {options.T_bc.rotation, options.td}),
         initializer_(initializerOptions(options)),
-        stillness_(initializerOptions(options).stillness) {
-    clearWindow();
+        stillness_(initializerOptions(options).stillness),
+        track_watch_(options.min_tracks),
+        continuation_(options.imu),
+        tracker_(options) {
+    reset();
   }
 
   void addImu(const ImuSample& sample) { queue_.addImu(sample); }
   void addFrame(const FeatureFrame& frame) { queue_.addFrame(frame); }
+  void setBacklog(int frames) { backlog_ = frames; }
+  void addLoopMatch(const LoopMatch& match) {
+    if (status_ == EstimatorStatus::kTracking) tracker_.addLoop(match);
+  }
 
   std::optional<EstimatorResult> process() {
-    std::optional<FrameMeasurements> measurements = queue_.next(options_.td);
+    std::optional<FrameMeasurements> measurements =
+        queue_.next(tracker_.window().rig.td, options_.rolling_shutter_readout);
     if (!measurements) return std::nullopt;
     EstimatorResult result;
     result.stamp = measurements->frame.stamp;
     moveEvents(queue_.takeEvents(), &result);
-    tellWhatIsNotEstimated(&result);
     if (measurements->restarted) reset();
-    if (status_ == EstimatorStatus::kTracking && !isCredible(*measurements, &result)) reset();
+    if (status_ == EstimatorStatus::kTracking) checkInterval(*measurements, &result);
+    if (options_.rolling_shutter_readout > 0.0) undoRollingShutter(&*measurements);
     stillness_.addFrame(measurements->frame, measurements->imu);
     if (status_ == EstimatorStatus::kInitializing) {
       initialize(*measurements, &result);
@@ -84,224 +100,178 @@ class Estimator::Implementation {
       track(*measurements, &result);
     }
     result.status = status_;
+    result.rig = tracker_.window().rig;
+    if (tracker_.window().refines_rig) result.rig_covariance = tracker_.window().rig_covariance;
     return result;
   }
 
+  /// As at the very first.
   void reset() {
-    if (status_ == EstimatorStatus::kTracking) ++sequence_;
-    status_ = EstimatorStatus::kInitializing;
-    initializer_.clear();
-    stillness_.clear();
-    clearWindow();
+    tracker_.forgetRig();
+    startAnew();
+    continuation_.clear();
+    credible_.reset();
+    extrinsic_is_known_ = options_.extrinsic != ExtrinsicMode::kUnknown;
+    calibrator_.clear();
   }
 
  private:
-  /// Once: the configuration wants more than there is.
-  void tellWhatIsNotEstimated(EstimatorResult* result) {
-    const bool wanted = options_.extrinsic != ExtrinsicMode::kTrusted || options_.estimate_td ||
-                        options_.rolling_shutter_readout > 0.0;
-    if (!wanted || told_) return;
-    told_ = true;
-    result->events.push_back(
-        {result->stamp,
-         Severity::kWarning,
-         "not_estimated",
-         "extrinsic, td and rolling shutter are not estimated yet: they are taken as configured",
-         {}});
+  /// A new sequence, which goes on from the last credible state.
+  void startAnew() {
+    if (status_ == EstimatorStatus::kTracking) ++sequence_;
+    status_ = EstimatorStatus::kInitializing;
+    initializer_.clear();
+    initializer_.setExtrinsic(tracker_.window().rig.T_bc);
+    stillness_.clear();
+    track_watch_.clear();
+    tracker_.clear();
   }
 
-  void clearWindow() {
-    window_ = SlidingWindow{};
-    window_.landmarks = Landmarks(options_.pixel_noise);
-    window_.T_bc = options_.T_bc;
-    window_.g_w = Eigen::Vector3d(0.0, 0.0, -options_.imu.gravity);
+  void fail(const std::string& why, std::vector<std::pair<std::string, double>> figures,
+            EstimatorResult* result) {
+    if (credible_) {
+      continuation_.start(credible_->stamp, credible_->state, credible_->covariance);
+    }
+    startAnew();
+    figures.emplace_back("sequence", sequence_);
+    result->events.push_back({result->stamp, Severity::kError, "reset",
+                              why + "; starting anew from the last credible position",
+                              std::move(figures)});
   }
 
-  /// The interval to the frame can be integrated over.
-  bool isCredible(const FrameMeasurements& measurements, EstimatorResult* result) const {
+  /// The interval to the frame must be one that can be integrated over.
+  void checkInterval(const FrameMeasurements& measurements, EstimatorResult* result) {
     constexpr double kLongestGap = 0.5;  // [s]
-    if (measurements.longest_gap <= kLongestGap && !measurements.is_first) return true;
-    result->events.push_back({result->stamp,
-                              Severity::kError,
-                              "reset",
-                              "the IMU was silent for too long; starting anew",
-                              {{"gap_s", measurements.longest_gap}}});
-    return false;
+    if (measurements.longest_gap <= kLongestGap && !measurements.is_first) return;
+    fail("the IMU was silent for too long", {{"gap_s", measurements.longest_gap}}, result);
+  }
+
+  void undoRollingShutter(FrameMeasurements* measurements) const {
+    const SlidingWindow& window = tracker_.window();
+    const Eigen::Vector3d bias = window.frames.empty()
+                                     ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                     : window.frames.back().state.value().gyroscope_bias;
+    std::vector<ImuSample> gyro = measurements->readout;
+    for (ImuSample& sample : gyro) sample.angular_velocity -= bias;
+    const RollingShutter shutter{options_.rolling_shutter_readout, options_.image_height,
+                                 window.rig.T_bc.rotation};
+    measurements->frame =
+        atFirstRow(measurements->frame, shutter, gyro, meanRate(measurements->imu) - bias);
+  }
+
+  /// Watches the rig turn, where camera and IMU stand to each other in a way that is not quite known.
+  /// Returns whether enough is known of it to begin.
+  bool calibrate(const FrameMeasurements& measurements, EstimatorResult* result) {
+    const RigCalibration& rig = tracker_.window().rig;
+    const std::optional<TurnCalibration> found = calibrator_.addFrame(measurements, rig.td);
+    moveEvents(calibrator_.takeEvents(), result);
+    if (!found) return extrinsic_is_known_;
+    const bool is_new = !extrinsic_is_known_ ||
+                        rig.T_bc.rotation.angularDistance(found->R_bc) > 2.0 * found->rotation_sigma;
+    constexpr double kTimeShift = 1.5e-3;  // [s]: frames timed by less than that are well timed
+    const bool is_shifted = std::abs(found->td - rig.td) > std::max(kTimeShift, found->td_sigma);
+    if (!is_new && !is_shifted) return true;
+    // Frames before were timed otherwise, and do not go with those to come.
+    if (is_shifted) initializer_.clear();
+    tracker_.setRig(*found);
+    initializer_.setExtrinsic(rig.T_bc);
+    if (!std::exchange(extrinsic_is_known_, true)) {
+      result->events.push_back({result->stamp,
+                                Severity::kInfo,
+                                "extrinsic_found",
+                                "the camera's rotation in the body frame is known",
+                                {{"turns", static_cast<double>(found->pairs)},
+                                 {"sigma_rad", found->rotation_sigma}}});
+    }
+    return true;
   }
 
   void initialize(const FrameMeasurements& measurements, EstimatorResult* result) {
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
-    const std::optional<Initialization> initialization = initializer_.addFrame(measurements);
+    continuation_.addFrame(measurements);
+    if (tracker_.window().refines_rig && !calibrate(measurements, result)) return;
+    std::optional<Initialization> initialization = initializer_.addFrame(measurements);
     moveEvents(initializer_.takeEvents(), result);
     if (!initialization) return;
-    startWindow(*initialization, next_frame_id_, &window_);
-    next_frame_id_ += static_cast<FrameId>(initialization->frames.size());
-    if (!options_.first_estimates) {
-      for (WindowFrame& frame : window_.frames) frame.state.ignoreFirstEstimates();
-    }
+    continuation_.apply(&*initialization);
+    tracker_.start(*initialization);
     status_ = EstimatorStatus::kTracking;
-    if (!adjust(result)) return;
+    const NavState first = tracker_.window().frames.back().state.value();
+    if (!adjust(first, false, result)) return;
+    continuation_.clear();
     report(measurements, result);
     result->events.push_back(
         {result->stamp,
          Severity::kInfo,
          "initialized",
          initialization->at_rest ? "initialized at rest" : "initialized moving",
-         {{"frames", static_cast<double>(initialization->frames.size())}}});
-    for (std::size_t i = 0; i + 1 < window_.frames.size(); ++i) makeKeyframe(i, result);
+         {{"frames", static_cast<double>(initialization->frames.size())},
+          {"sequence", static_cast<double>(sequence_)}}});
+    tracker_.keepFirstFrames(sequence_, result);
   }
 
   void track(const FrameMeasurements& measurements, EstimatorResult* result) {
-    appendFrame(measurements);
-    if (!adjust(result)) return;
+    const NavState predicted = tracker_.append(measurements, stillness_.isStill());
+    const auto features = static_cast<int>(measurements.frame.observations.size());
+    const std::optional<Event> event = track_watch_.addFrame(result->stamp, features);
+    if (event) result->events.push_back(*event);
+    if (!adjust(predicted, usesMotionOnly(), result)) return;
     report(measurements, result);
-    slide(result);
+    tracker_.slide(sequence_, result);
   }
 
-  void appendFrame(const FrameMeasurements& measurements) {
-    const NavState& last = window_.frames.back().state.value();
-    Preintegration imu(options_.imu, last.accelerometer_bias, last.gyroscope_bias);
-    // Across a gap the motion is guessed at.
-    constexpr double kGapNoise = 10.0;
-    imu.integrate(measurements.imu, measurements.has_gap ? kGapNoise : 1.0);
-    const NavState predicted = imu.predict(last, window_.g_w);
-    WindowFrame frame{next_frame_id_++, measurements.frame.stamp, WindowState(predicted),
-                      std::move(imu)};
-    frame.stands_still = stillness_.isStill();
-    if (!options_.first_estimates) frame.state.ignoreFirstEstimates();
-    window_.landmarks.addFrame(frame.id, measurements.frame);
-    window_.frames.push_back(std::move(frame));
+  bool usesMotionOnly() const {
+    constexpr int kBehind = 3;  // frames
+    if (options_.motion_only == MotionOnly::kWhenBehind) return backlog_ >= kBehind;
+    return options_.motion_only == MotionOnly::kAlways;
   }
 
-  /// Solves the window; where that fails, starts anew and returns false.
-  bool adjust(EstimatorResult* result) {
-    triangulateTracks(&window_);
-    const StopWatch watch;
-    WindowSolverOptions solver;
-    solver.max_num_iterations = options_.max_num_iterations;
-    solver.max_solver_time = options_.max_solver_time;
-    const SolveSummary summary = solveWindow(solver, &window_);
-    EstimatorStatistics& statistics = result->statistics;
-    statistics.landmarks = summary.landmarks;
-    statistics.observations = summary.observations;
-    statistics.iterations = summary.iterations;
-    statistics.cost_initial = summary.cost_initial;
-    statistics.cost_final = summary.cost_final;
-    statistics.outliers = removeOutliers({}, &window_);
-    statistics.solve_seconds = watch.seconds();
-    window_.frames.back().covariance = summary.newest_covariance;
-    if (summary.timed_out) {
-      result->events.push_back({result->stamp,
-                                Severity::kWarning,
-                                "solver_time",
-                                "max_solver_time has cut a solution short: the machine is too slow",
-                                {{"iterations", static_cast<double>(summary.iterations)}}});
-    }
-    if (summary.usable && isFinite(window_.frames.back().state.value())) return true;
-    result->events.push_back({result->stamp,
-                              Severity::kError,
-                              "reset",
-                              "the window has no finite solution; starting anew",
-                              {{"landmarks", static_cast<double>(summary.landmarks)}}});
-    reset();
+  /// Solves; where that fails or is not credible, starts anew and returns false.
+  bool adjust(const NavState& predicted, bool motion_only, EstimatorResult* result) {
+    const bool solved = tracker_.adjust(motion_only, result);
+    const WindowFrame& newest = tracker_.window().frames.back();
+    const std::optional<Failure> failure =
+        solved ? detectFailure({}, predicted, newest.state.value(), newest.covariance)
+               : Failure{"the window has no solution", "landmarks",
+                         static_cast<double>(result->statistics.landmarks)};
+    if (!failure) return true;
+    fail(failure->reason, {{failure->figure, failure->value}}, result);
     return false;
   }
 
   void report(const FrameMeasurements& measurements, EstimatorResult* result) {
+    const SlidingWindow& window = tracker_.window();
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
     Odometry odometry;
     odometry.stamp = measurements.frame.stamp;
-    odometry.state = window_.frames.back().state.value();
+    odometry.state = window.frames.back().state.value();
     odometry.sequence = sequence_;
     if (!measurements.imu.empty()) {
       odometry.angular_velocity_b =
           measurements.imu.back().angular_velocity - odometry.state.gyroscope_bias;
     }
-    odometry.covariance = window_.frames.back().covariance;
+    odometry.covariance = window.frames.back().covariance;
     result->odometry = odometry;
-    result->landmarks = landmarkPoints();
-    for (const WindowFrame& frame : window_.frames) {
+    credible_ = odometry;
+    result->landmarks = landmarkPoints(window);
+    for (const WindowFrame& frame : window.frames) {
       result->window.push_back({frame.stamp, frame.state.value()});
     }
   }
 
-  /// Keeps the second newest frame or lets it go, and makes room.
-  void slide(EstimatorResult* result) {
-    const std::size_t second = window_.frames.size() - 2;
-    const bool keep = second == 0 || isKeyframeAt(second);
-    result->statistics.keyframe = keep;
-    if (!keep) {
-      dropFrame(&window_, second);
-      return;
-    }
-    makeKeyframe(second, result);
-    if (window_.frames.size() <= static_cast<std::size_t>(options_.window_size)) return;
-    const StopWatch watch;
-    const WindowFrame& oldest = window_.frames.front();
-    result->left.push_back(
-        {oldest.keyframe_id, sequence_, oldest.stamp, oldest.state.value().T_wb});
-    marginalizeOldest(WindowSolverOptions{}.huber, &window_);
-    result->statistics.marginalize_seconds = watch.seconds();
-  }
-
-  bool isKeyframeAt(std::size_t index) const {
-    const WindowFrame& frame = window_.frames[index];
-    const WindowFrame& last = window_.frames[index - 1];
-    const Eigen::Quaterniond R_bc = window_.T_bc.rotation;
-    const Eigen::Quaterniond R_frame_last = R_bc.conjugate() *
-                                            frame.state.value().T_wb.rotation.conjugate() *
-                                            last.state.value().T_wb.rotation * R_bc;
-    const FrameParallax parallax =
-        parallaxBetween(window_.landmarks, last.id, frame.id, R_frame_last);
-    KeyframeChoiceOptions choice;
-    choice.min_parallax = options_.keyframe_parallax;
-    int tracks = 0;
-    for (const auto& [id, track] : window_.landmarks.tracks()) tracks += track.isSeenIn(frame.id);
-    return isKeyframe(choice, parallax, tracks, toSeconds(frame.stamp - last.stamp));
-  }
-
-  void makeKeyframe(std::size_t index, EstimatorResult* result) {
-    WindowFrame& frame = window_.frames[index];
-    frame.keyframe_id = next_keyframe_id_++;
-    Keyframe keyframe;
-    keyframe.id = frame.keyframe_id;
-    keyframe.sequence = sequence_;
-    keyframe.stamp = frame.stamp;
-    keyframe.T_wb = frame.state.value().T_wb;
-    keyframe.T_bc = window_.T_bc;
-    keyframe.covariance = frame.covariance.topLeftCorner<6, 6>();
-    const CameraPoses cameras = window_.cameras();
-    for (const auto& [id, track] : window_.landmarks.tracks()) {
-      if (!track.has_depth) continue;
-      for (const TrackObservation& o : track.observations) {
-        if (o.frame != frame.id) continue;
-        keyframe.points.push_back(
-            {id, o.pixel, o.measured.bearing, positionInWorld(track, cameras.at(track.host()))});
-      }
-    }
-    result->keyframes.push_back(std::move(keyframe));
-  }
-
-  std::vector<LandmarkPoint> landmarkPoints() const {
-    std::vector<LandmarkPoint> points;
-    const CameraPoses cameras = window_.cameras();
-    for (const auto& [id, track] : window_.landmarks.tracks()) {
-      if (!track.has_depth) continue;
-      points.push_back({id, positionInWorld(track, cameras.at(track.host()))});
-    }
-    return points;
-  }
-
   EstimatorOptions options_;
   MeasurementQueue queue_;
+  TurnCalibrator calibrator_;
   Initializer initializer_;
   StillnessDetector stillness_;
-  SlidingWindow window_;
+  TrackWatch track_watch_;
+  Continuation continuation_;
+  WindowTracker tracker_;
+  std::optional<Odometry> credible_;  ///< the last that was reported
   EstimatorStatus status_ = EstimatorStatus::kInitializing;
-  FrameId next_frame_id_ = 0;
-  std::int64_t next_keyframe_id_ = 0;
   std::uint32_t sequence_ = 0;
-  bool told_ = false;
+  int backlog_ = 0;
+  bool extrinsic_is_known_ = true;
 };
 
 Estimator::Estimator(const EstimatorOptions& options) {
@@ -314,8 +284,9 @@ Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::addImu(const ImuSample& sample) { implementation_->addImu(sample); }
 void Estimator::addFrame(const FeatureFrame& frame) { implementation_->addFrame(frame); }
-void Estimator::addLoopMatch(const LoopMatch& /*match*/) {}
+void Estimator::addLoopMatch(const LoopMatch& match) { implementation_->addLoopMatch(match); }
 std::optional<EstimatorResult> Estimator::process() { return implementation_->process(); }
+void Estimator::setBacklog(int frames) { implementation_->setBacklog(frames); }
 void Estimator::reset() { implementation_->reset(); }
 
 }  // namespace vins

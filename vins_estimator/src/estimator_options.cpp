@@ -22,6 +22,8 @@ constexpr Range kMinTracks{5, 100};
 constexpr Range kIterations{1, 100};
 constexpr Range kSolverTime{0.0, 10.0};
 constexpr Range kReadout{0.0, 0.2};
+constexpr Range kHeight{16, 20000};
+constexpr Range kSigma{1e-6, 3.0};
 constexpr double kSampleAbove = 0.03;  ///< no density of a usable accelerometer is [m/s^2/sqrt(Hz)]
 constexpr double kNotOrthogonal = 1e-2;  ///< of R^T R - 1: typed numbers with few digits pass
 
@@ -99,6 +101,17 @@ double readTimeOffset(const Parameters& parameters) {
   return parameters.numberOr("td", 0.0, kTimeOffset);
 }
 
+MotionOnly readMotionOnly(const Parameters& parameters) {
+  switch (parameters.integerOr("motion_only_ba", 2, {0, 2})) {
+    case 0:
+      return MotionOnly::kNever;
+    case 1:
+      return MotionOnly::kAlways;
+    default:
+      return MotionOnly::kWhenBehind;
+  }
+}
+
 double readReadout(const Parameters& parameters) {
   const bool is_rolling = parameters.flagOr("rolling_shutter", false);
   const double readout = parameters.numberOr("rolling_shutter_tr", 0.0, kReadout);
@@ -168,6 +181,10 @@ void EstimatorOptions::validate() const {
   require("max_num_iterations", max_num_iterations, kIterations);
   require("max_solver_time", max_solver_time, kSolverTime);
   require("rolling_shutter_tr", rolling_shutter_readout, kReadout);
+  if (rolling_shutter_readout > 0.0) require("image_height", image_height, kHeight);
+  require("extrinsic_rotation_sigma", extrinsic_rotation_sigma, kSigma);
+  require("extrinsic_translation_sigma", extrinsic_translation_sigma, kSigma);
+  require("td_sigma", td_sigma, kSigma);
 }
 
 std::ostream& operator<<(std::ostream& out, const EstimatorOptions& options) {
@@ -179,6 +196,10 @@ std::ostream& operator<<(std::ostream& out, const EstimatorOptions& options) {
              << " m\n"
              << "td: " << options.td << " s, estimate_td: " << options.estimate_td << "\n"
              << "rolling_shutter_tr: " << options.rolling_shutter_readout << " s\n"
+             << "extrinsic_rotation_sigma: " << options.extrinsic_rotation_sigma << " rad, "
+             << "extrinsic_translation_sigma: " << options.extrinsic_translation_sigma << " m, "
+             << "td_sigma: " << options.td_sigma << " s\n"
+             << "motion_only_ba: " << static_cast<int>(options.motion_only) << "\n"
              << "pixel_noise: " << options.pixel_noise << " px\n"
              << "window_size: " << options.window_size << " keyframes\n"
              << "keyframe_parallax: " << options.keyframe_parallax << " px\n"
@@ -196,6 +217,15 @@ EstimatorOptions readEstimatorOptions(const Parameters& parameters) {
   options.td = readTimeOffset(parameters);
   options.estimate_td = parameters.flagOr("estimate_td", options.estimate_td);
   options.rolling_shutter_readout = readReadout(parameters);
+  if (options.rolling_shutter_readout > 0.0) {
+    options.image_height = parameters.integer("image_height", kHeight);
+  }
+  options.motion_only = readMotionOnly(parameters);
+  options.extrinsic_rotation_sigma = parameters.numberOr(
+      "extrinsic_rotation_sigma", options.extrinsic_rotation_sigma, kSigma);
+  options.extrinsic_translation_sigma = parameters.numberOr(
+      "extrinsic_translation_sigma", options.extrinsic_translation_sigma, kSigma);
+  options.td_sigma = parameters.numberOr("td_sigma", options.td_sigma, kSigma);
   options.pixel_noise = parameters.numberOr("pixel_noise", options.pixel_noise, kPixelNoise);
   options.window_size = parameters.integerOr("window_size", options.window_size, kWindowSize);
   options.keyframe_parallax =

@@ -59,7 +59,8 @@ TEST(EstimatorOptions, ReadsVinsMonosKeys) {
   const EstimatorOptions options = read(std::string(kExtrinsic) + kDensities +
                                         "td: -0.01\nestimate_td: 1\nmax_solver_time: 0.04\n"
                                         "max_num_iterations: 6\nkeyframe_parallax: 12.5\n"
-                                        "rolling_shutter: 1\nrolling_shutter_tr: 0.033\n");
+                                        "rolling_shutter: 1\nrolling_shutter_tr: 0.033\n"
+                                        "image_height: 480\n");
   EXPECT_EQ(options.imu.accelerometer_noise, 0.002);
   EXPECT_EQ(options.imu.gyroscope_noise, 0.00017);
   EXPECT_EQ(options.imu.accelerometer_walk, 0.003);

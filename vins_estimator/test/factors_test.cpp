@@ -246,7 +246,7 @@ TEST(PriorFactor, IsLinearInTheDifferences) {
   Random random(3);
   Prior prior;
   const NavState at = random.navState();
-  prior.parts = {{0, false, at}, {0, true, at}};
+  prior.parts = {{Prior::Kind::kPose, 0, at, {}}, {Prior::Kind::kMotion, 0, at, {}}};
   prior.A = MatrixXd::Random(7, 15);
   prior.b = VectorXd::Random(7);
   const PriorFactor factor(prior);

@@ -40,14 +40,14 @@ SyntheticWindow makeWindow(int frames, int landmarks, double noise, VisibilityOf
   const ImuNoise imu_noise{2.0e-3, 1.7e-4, 3.0e-3, 1.9e-5, 9.81};
   SyntheticWindow result;
   SlidingWindow& window = result.window;
-  window.T_bc = Pose(so3::exp(Eigen::Vector3d(0.1, -0.2, 0.05)), Eigen::Vector3d(0.05, 0.02, 0.1));
+  window.rig.T_bc = Pose(so3::exp(Eigen::Vector3d(0.1, -0.2, 0.05)), Eigen::Vector3d(0.05, 0.02, 0.1));
 
   NavState state;
   state.T_wb = Pose(so3::exp(Eigen::Vector3d(0.1, -0.05, 0.4)), Eigen::Vector3d(1.0, 2.0, 3.0));
   state.v_w = {0.6, -0.4, 0.1};
   std::vector<Eigen::Vector3d> points;
   for (int k = 0; k < landmarks; ++k) {
-    points.push_back(state.T_wb * window.T_bc *
+    points.push_back(state.T_wb * window.rig.T_bc *
                      Eigen::Vector3d(1.5 * random.normal(), 1.5 * random.normal(),
                                      4.0 + 2.0 * random.uniform()));
   }
@@ -64,7 +64,7 @@ SyntheticWindow makeWindow(int frames, int landmarks, double noise, VisibilityOf
     for (int k = 0; k < landmarks; ++k) {
       const Visibility seen = visibility(k);
       if (i < seen.begin || i >= seen.end) continue;
-      features.observations.push_back(observe(k, state.T_wb * window.T_bc,
+      features.observations.push_back(observe(k, state.T_wb * window.rig.T_bc,
                                               points[static_cast<std::size_t>(k)], noise, &random));
     }
     start.frames.push_back({features, state, imu});

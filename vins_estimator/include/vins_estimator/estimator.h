@@ -16,6 +16,8 @@
 #include "vins_core/time.h"
 #include "vins_estimator/estimator_options.h"
 #include "vins_estimator/inertial/nav_state.h"
+#include "vins_estimator/inertial/rig_calibration.h"
+#include "vins_estimator/window/window_output.h"
 
 namespace vins {
 
@@ -43,14 +45,9 @@ struct EstimatorStatistics {
   double cost_initial = 0;  ///< half the sum of squares
   double cost_final = 0;
   bool keyframe = false;             ///< the window slid by its oldest frame
+  bool motion_only = false;          ///< only the newest frames were adjusted
   double solve_seconds = 0.0;        ///< for people and diagnostics only: nothing depends on it
   double marginalize_seconds = 0.0;  ///< as above
-};
-
-/// A landmark of the window in the world, for pictures.
-struct LandmarkPoint {
-  std::int64_t id = 0;
-  Eigen::Vector3d position_w = Eigen::Vector3d::Zero();  ///< [m]
 };
 
 /// What came of one frame.
@@ -64,6 +61,8 @@ struct EstimatorResult {
   std::vector<LoopEdge> loop_edges;      ///< refined loops
   std::vector<LandmarkPoint> landmarks;  ///< in the newest window
   std::vector<StampedNavState> window;   ///< the frames of the window, oldest first
+  RigCalibration rig;                    ///< as configured, or as estimated
+  Matrix7d rig_covariance = Matrix7d::Zero();  ///< of its errors; zero where it is not estimated
   EstimatorStatistics statistics;
 };
 
@@ -86,11 +85,15 @@ class Estimator {
   /// A verified loop, for the window's next adjustments.
   void addLoopMatch(const LoopMatch& match);
 
+  /// Tells that frames wait outside: with motion_only_ba 2 the window's adjustment is put off while
+  /// there are several. Never called, nothing depends on time.
+  void setBacklog(int frames);
+
   /// Works on the oldest frame whose IMU samples have all come; nothing where there is none. Call
   /// until it returns nothing.
   std::optional<EstimatorResult> process();
 
-  /// Forgets everything but the options; a new sequence begins.
+  /// Forgets everything but the options and the sequence's number, which rises.
   void reset();
 
  private:

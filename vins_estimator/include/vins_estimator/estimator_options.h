@@ -15,6 +15,13 @@ enum class ExtrinsicMode {
   kUnknown   ///< 2: to be found by moving
 };
 
+/// When only the newest frames are adjusted instead of the window (motion_only_ba: 0, 1, 2).
+enum class MotionOnly {
+  kNever,      ///< 0
+  kAlways,     ///< 1: with every frame that makes no keyframe, for slow machines
+  kWhenBehind  ///< 2: while frames wait for the estimator, so that it catches up
+};
+
 /// Options of the estimator, in VINS-Mono's names where it has them.
 struct EstimatorOptions {
   ImuNoise imu;
@@ -29,7 +36,12 @@ struct EstimatorOptions {
   bool first_estimates = true;      ///< first-estimates Jacobians; off only to study them
   ExtrinsicMode extrinsic = ExtrinsicMode::kTrusted;  ///< estimate_extrinsic
   bool estimate_td = false;                           ///< td is a first guess
+  double extrinsic_rotation_sigma = 0.05;     ///< of a guess of T_bc, per axis [rad]
+  double extrinsic_translation_sigma = 0.05;  ///< the same [m]
+  double td_sigma = 0.02;                     ///< of a guess of td [s]
   double rolling_shutter_readout = 0.0;  ///< of all rows (rolling_shutter_tr); 0: global [s]
+  int image_height = 0;                  ///< needed with a rolling shutter [px]
+  MotionOnly motion_only = MotionOnly::kWhenBehind;  ///< motion_only_ba
 
   /// Throws InputError naming the first value that is out of range.
   void validate() const;

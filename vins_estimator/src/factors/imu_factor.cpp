@@ -1,5 +1,7 @@
 #include "vins_estimator/factors/imu_factor.h"
 
+#include <Eigen/LU>
+
 #include "vins_core/so3.h"
 #include "vins_estimator/factors/parameter_blocks.h"
 
@@ -27,13 +29,6 @@ Relative relative(const Preintegration& imu, const Vector3d& g_w, const NavState
   r.velocity = R_bw * (j.v_w - i.v_w - t * g_w);
   r.rotation = so3::log(r.increments.gamma.conjugate() * R_bw * j.T_wb.rotation);
   return r;
-}
-
-/// The state at which Jacobians are taken.
-NavState linearization(const WindowState& state, const NavState& current) {
-  NavState at = state.motionForJacobians(current);
-  at.T_wb = state.poseForJacobians(current.T_wb);
-  return at;
 }
 
 template <int n>
@@ -93,6 +88,17 @@ ImuJacobians imuJacobians(const Preintegration& imu, const Vector3d& g_w, const 
   return out;
 }
 
+Matrix15d carriedCovariance(const Preintegration& imu, const Vector3d& g_w, const NavState& i,
+                            const Matrix15d& covariance) {
+  const ImuJacobians J = imuJacobians(imu, g_w, i, imu.predict(i, g_w));
+  Matrix15d J_i, J_j;
+  J_i << J.J_pose_i, J.J_motion_i;
+  J_j << J.J_pose_j, J.J_motion_j;
+  const Matrix15d residuals = J_i * covariance * J_i.transpose() + imu.covariance();
+  const Matrix15d J_j_inverse = J_j.inverse();
+  return J_j_inverse * residuals * J_j_inverse.transpose();
+}
+
 bool ImuFactor::Evaluate(double const* const* parameters, double* residuals,
                          double** jacobians) const {
   const NavState i = toNavState(parameters[0], parameters[1]);
@@ -100,7 +106,7 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals,
   const Matrix15d& weight = imu_.sqrtInformation();
   Eigen::Map<Vector15d>(residuals).noalias() = weight * imuResidual(imu_, g_w_, i, j);
   if (jacobians == nullptr) return true;
-  const ImuJacobians J = imuJacobians(imu_, g_w_, linearization(i_, i), linearization(j_, j));
+  const ImuJacobians J = imuJacobians(imu_, g_w_, i_.linearizationPoint(i), j_.linearizationPoint(j));
   if (jacobians[0] != nullptr) writeJacobian<6>(weight, J.J_pose_i, jacobians[0]);
   if (jacobians[1] != nullptr) writeJacobian<9>(weight, J.J_motion_i, jacobians[1]);
   if (jacobians[2] != nullptr) writeJacobian<6>(weight, J.J_pose_j, jacobians[2]);

@@ -7,7 +7,7 @@ namespace {
 
 NavState stateOf(const Prior::Part& part, const double* block) {
   NavState state = part.at;
-  if (part.motion) {
+  if (part.kind == Prior::Kind::kMotion) {
     setMotion(block, &state);
   } else {
     state.T_wb = toPose(block);
@@ -17,21 +17,36 @@ NavState stateOf(const Prior::Part& part, const double* block) {
 
 }  // namespace
 
+int Prior::Part::size() const {
+  switch (kind) {
+    case Kind::kPose:
+      return 6;
+    case Kind::kMotion:
+      return 9;
+    case Kind::kRig:
+      return 7;
+  }
+  return 0;
+}
+
 int Prior::columns() const {
   int columns = 0;
   for (const Part& part : parts) columns += part.size();
   return columns;
 }
 
-Eigen::VectorXd priorDifference(const Prior::Part& part, const NavState& state) {
+Eigen::VectorXd priorDifference(const Prior::Part& part, const NavState& state,
+                                const RigCalibration& rig) {
+  if (part.kind == Prior::Kind::kRig) return minus(rig, part.rig_at);
   const Vector15d d = minus(state, part.at);
-  return part.motion ? Eigen::VectorXd(d.tail<9>()) : Eigen::VectorXd(d.head<6>());
+  return part.kind == Prior::Kind::kMotion ? Eigen::VectorXd(d.tail<9>())
+                                           : Eigen::VectorXd(d.head<6>());
 }
 
 PriorFactor::PriorFactor(const Prior& prior) : prior_(prior) {
   set_num_residuals(static_cast<int>(prior.A.rows()));
   for (const Prior::Part& part : prior.parts) {
-    mutable_parameter_block_sizes()->push_back(part.motion ? 9 : 7);
+    mutable_parameter_block_sizes()->push_back(part.kind == Prior::Kind::kMotion ? 9 : 7);
   }
 }
 
@@ -41,7 +56,7 @@ bool PriorFactor::Evaluate(double const* const* parameters, double* residuals,
   int column = 0;
   for (std::size_t k = 0; k < prior_.parts.size(); ++k) {
     const Prior::Part& part = prior_.parts[k];
-    d.segment(column, part.size()) = priorDifference(part, stateOf(part, parameters[k]));
+    d.segment(column, part.size()) = priorDifference(part, stateOf(part, parameters[k]), {});
     column += part.size();
   }
   Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()).noalias() = prior_.A * d + prior_.b;

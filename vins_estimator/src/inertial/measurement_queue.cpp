@@ -152,13 +152,13 @@ bool MeasurementQueue::isFarAhead(Stamp stamp) const {
   return toSeconds(stamp - newest) > options_.max_lead;
 }
 
-std::optional<FrameMeasurements> MeasurementQueue::next(double td) {
+std::optional<FrameMeasurements> MeasurementQueue::next(double td, double readout) {
   const Stamp offset = toNanoseconds(td);
   while (!frames_.empty() && !imu_.empty()) {
     const Stamp end = frames_.front().stamp + offset;
-    if (end > imu_.back().stamp) return std::nullopt;
+    if (end + toNanoseconds(readout) > imu_.back().stamp) return std::nullopt;
     const bool is_covered = end >= imu_.front().stamp && (!end_ || end > *end_);
-    if (is_covered) return cutOut(end);
+    if (is_covered) return cutOut(end, readout);
     dropEarlyFrame();
   }
   return std::nullopt;
@@ -176,7 +176,7 @@ void MeasurementQueue::dropEarlyFrame() {
   tellDropped(stamp);
 }
 
-FrameMeasurements MeasurementQueue::cutOut(Stamp end) {
+FrameMeasurements MeasurementQueue::cutOut(Stamp end, double readout) {
   FrameMeasurements cut;
   cut.frame = std::move(frames_.front());
   frames_.pop_front();
@@ -186,6 +186,7 @@ FrameMeasurements MeasurementQueue::cutOut(Stamp end) {
   const Stamp lead_in = end - toNanoseconds(options_.lead_in);
   cut.begin = end_ ? *end_ : std::max(lead_in, imu_.front().stamp);
   addSamples(&cut);
+  if (readout > 0.0) addReadout(readout, &cut);
   end_ = end;
   forgetUntil(end);
   return cut;
@@ -204,6 +205,15 @@ void MeasurementQueue::addSamples(FrameMeasurements* cut) const {
   }
   if (cut->end > cut->begin) cut->imu.push_back(sampleAt(cut->end));
   cut->has_gap = cut->longest_gap > options_.gap_periods * period_;
+}
+
+void MeasurementQueue::addReadout(double readout, FrameMeasurements* cut) const {
+  cut->readout.push_back(sampleAt(cut->end));
+  const Stamp last = cut->end + toNanoseconds(readout);
+  auto sample = std::lower_bound(imu_.begin(), imu_.end(), cut->end + 1, isBefore);
+  for (; sample != imu_.end() && cut->readout.back().stamp < last; ++sample) {
+    cut->readout.push_back(*sample);
+  }
 }
 
 ImuSample MeasurementQueue::sampleAt(Stamp stamp) const {

@@ -52,13 +52,28 @@ Matrix15d transition(const Midpoint& m) {
   return F;
 }
 
+/// Variances of a step's mean readings besides the sensor's noise: the motion between the two is
+/// not known. Motion of a deviation s at a frequency f, drawn as a straight line over dt, is missed
+/// by s (2 pi f dt)^2 / 8 until that reaches s itself. Next to nothing at the usual rates, it is what
+/// a gap in the samples costs.
+double missedShare(double dt) {
+  constexpr double kFrequency = 1.5;  // [Hz], of a vehicle's or a hand's motion
+  const double phase = 2.0 * M_PI * kFrequency * dt;
+  return std::min(1.0, phase * phase / 8.0);
+}
+constexpr double kUsualAcceleration = 2.0;  // deviation [m/s^2]
+constexpr double kUsualTurnRate = 0.5;      // deviation [rad/s]
+
 /// What the noise of one step adds. White noise of density s acts as one error of variance
 /// s^2 / dt, constant over the step: the sum over many steps then has the variance s^2 t that the
 /// density says. (Two half-errors, one a reading, would be counted as independent in neighbouring
 /// steps, which share a reading, and halve it.)
 Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise, const Matrix15d& F) {
-  const double acc = noise.accelerometer_noise * noise.accelerometer_noise / m.dt;
-  const double gyr = noise.gyroscope_noise * noise.gyroscope_noise / m.dt;
+  const double missed = missedShare(m.dt);
+  const double acc = noise.accelerometer_noise * noise.accelerometer_noise / m.dt +
+                     std::pow(missed * kUsualAcceleration, 2);
+  const double gyr = noise.gyroscope_noise * noise.gyroscope_noise / m.dt +
+                     std::pow(missed * kUsualTurnRate, 2);
   // An error of a reading acts as the opposite error of the bias does.
   const Eigen::Matrix<double, 9, 3> G_acc = F.block<9, 3>(0, kAccBias);
   const Eigen::Matrix<double, 9, 3> G_gyr = F.block<9, 3>(0, kGyrBias);
@@ -84,11 +99,9 @@ double readingVariance(const std::vector<ImuSample>& samples) {
   return squares.maxCoeff() / (6.0 * static_cast<double>(samples.size() - 2));
 }
 
-/// The noise of a piece: scaled, and raised by what of its vibration does not average out.
-ImuNoise noiseOf(const ImuNoise& usual, const std::vector<ImuSample>& samples, double scale) {
+/// The noise of a piece: raised by what of its vibration does not average out.
+ImuNoise noiseOf(const ImuNoise& usual, const std::vector<ImuSample>& samples) {
   ImuNoise noise = usual;
-  noise.accelerometer_noise *= scale;
-  noise.gyroscope_noise *= scale;
   const double span = toSeconds(samples.back().stamp - samples.front().stamp);
   const double period = span / static_cast<double>(samples.size() - 1);
   const double white = noise.accelerometer_noise * noise.accelerometer_noise;
@@ -104,14 +117,14 @@ Preintegration::Preintegration(const ImuNoise& noise, const Vector3d& accelerome
                                const Vector3d& gyroscope_bias)
     : noise_(noise), accelerometer_bias_(accelerometer_bias), gyroscope_bias_(gyroscope_bias) {}
 
-void Preintegration::integrate(const std::vector<ImuSample>& samples, double noise_scale) {
+void Preintegration::integrate(const std::vector<ImuSample>& samples) {
   if (samples.size() < 2) return;
-  pieces_.push_back({samples, noise_scale});
+  pieces_.push_back(samples);
   integratePiece(pieces_.back());
 }
 
 void Preintegration::append(const Preintegration& next) {
-  for (const Piece& piece : next.pieces_) integrate(piece.samples, piece.noise_scale);
+  for (const std::vector<ImuSample>& piece : next.pieces_) integrate(piece);
 }
 
 void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
@@ -125,14 +138,12 @@ void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
   jacobian_.setIdentity();
   covariance_.setZero();
   sqrt_information_known_ = false;
-  for (const Piece& piece : pieces_) integratePiece(piece);
+  for (const std::vector<ImuSample>& piece : pieces_) integratePiece(piece);
 }
 
-void Preintegration::integratePiece(const Piece& piece) {
-  const ImuNoise noise = noiseOf(noise_, piece.samples, piece.noise_scale);
-  for (std::size_t i = 1; i < piece.samples.size(); ++i) {
-    step(piece.samples[i - 1], piece.samples[i], noise);
-  }
+void Preintegration::integratePiece(const std::vector<ImuSample>& samples) {
+  const ImuNoise noise = noiseOf(noise_, samples);
+  for (std::size_t i = 1; i < samples.size(); ++i) step(samples[i - 1], samples[i], noise);
   sqrt_information_known_ = false;
 }
 

@@ -36,8 +36,7 @@ void InitializerOptions::validate() const {
                                                      {"min_span", min_span},
                                                      {"attempt_interval", attempt_interval},
                                                      {"report_interval", report_interval},
-                                                     {"max_gap", max_gap},
-                                                     {"gap_noise_scale", gap_noise_scale}};
+                                                     {"max_gap", max_gap}};
   for (const auto& [name, value] : positive) {
     if (!(std::isfinite(value) && value > 0.0)) fail(name, value, "a positive number");
   }
@@ -178,7 +177,7 @@ std::vector<Preintegration> Initializer::integrateBetween(const FrameIndices& ch
   std::vector<Preintegration> imu(chosen.size(), nothing);
   for (std::size_t i = 1; i < chosen.size(); ++i) {
     for (std::size_t k = chosen[i - 1] + 1; k <= chosen[i]; ++k) {
-      imu[i].integrate(buffer_[k].imu, buffer_[k].has_gap ? options_.gap_noise_scale : 1.0);
+      imu[i].integrate(buffer_[k].imu);
     }
   }
   return imu;
@@ -221,7 +220,8 @@ Initialization Initializer::toInitialization(const FrameIndices& chosen,
   initialization.sigma.segment<3>(kGyrBias).setConstant(joint.gyroscope_bias_sigma);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     initialization.frames.push_back(
-        {buffer_[chosen[i]].frame, alignment.solution.states[i], alignment.solution.imu[i]});
+        {buffer_[chosen[i]].frame, alignment.solution.states[i], alignment.solution.imu[i],
+         buffer_[chosen[i]].imu.back().angular_velocity});
   }
   return initialization;
 }

@@ -32,8 +32,10 @@ FrameParallax parallaxBetween(const Landmarks& landmarks, FrameId a, FrameId b,
 bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& against_last, int tracks,
                 double seconds) {
   const double min_shared = std::max<double>(options.min_shared, options.min_shared_ratio * tracks);
-  return against_last.shared < min_shared || against_last.parallax >= options.min_parallax ||
-         seconds >= options.max_interval;
+  if (seconds >= options.max_interval) return true;
+  // A blind frame is worth nothing, and would push one out that has seen something.
+  if (tracks < options.min_tracks) return false;
+  return against_last.shared < min_shared || against_last.parallax >= options.min_parallax;
 }
 
 }  // namespace vins

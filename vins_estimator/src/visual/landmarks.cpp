@@ -12,7 +12,6 @@ TrackObservation toObservation(FrameId frame, const FeatureObservation& feature,
   observation.measured.bearing = feature.bearing;
   observation.measured.basis = tangentBasis(feature.bearing);
   observation.measured.inverse_sigma = 1.0 / (pixel_noise * feature.angular_resolution);
-  observation.bearing_velocity = feature.bearing_velocity;
   observation.pixel = feature.pixel;
   observation.angular_resolution = feature.angular_resolution;
   return observation;

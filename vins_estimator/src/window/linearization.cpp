@@ -2,25 +2,45 @@
 
 #include <cmath>
 
+#include "vins_core/so3.h"
+
 namespace vins {
 
-WindowGeometry geometryOf(const SlidingWindow& window, const std::vector<NavState>& states) {
-  WindowGeometry geometry;
-  geometry.present.reserve(states.size());
-  geometry.linearization.reserve(states.size());
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const Pose& T_wb = states[i].T_wb;
-    geometry.present.push_back(viewGeometry(T_wb, window.T_bc));
-    geometry.linearization.push_back(
-        viewGeometry(window.frames[i].state.poseForJacobians(T_wb), window.T_bc));
-  }
-  return geometry;
+namespace {
+
+/// Where a frame's body was `late` seconds after the frame's time.
+Pose carried(const Pose& T_wb, const Eigen::Matrix<double, 6, 1>& rate, double late) {
+  if (late == 0.0) return T_wb;
+  return {T_wb.rotation * so3::exp(Eigen::Vector3d(late * rate.tail<3>())),
+          T_wb.position + late * rate.head<3>()};
 }
 
-WindowGeometry geometryOf(const SlidingWindow& window) {
-  std::vector<NavState> states;
-  for (const WindowFrame& frame : window.frames) states.push_back(frame.state.value());
-  return geometryOf(window, states);
+}  // namespace
+
+WindowGeometry geometryOf(const SlidingWindow& window, const WindowValues& values) {
+  WindowGeometry geometry;
+  const std::size_t views = values.states.size() + values.old.size();
+  geometry.present.reserve(views);
+  geometry.linearization.reserve(views);
+  const Pose& T_bc = values.rig.T_bc;
+  for (std::size_t i = 0; i < values.states.size(); ++i) {
+    const NavState& state = values.states[i];
+    const WindowFrame& frame = window.frames[i];
+    Eigen::Matrix<double, 6, 1> rate;
+    rate << state.v_w, frame.measured_rate - state.gyroscope_bias;
+    const double late = values.rig.td - frame.td;
+    geometry.present.push_back(viewGeometry(carried(state.T_wb, rate, late), T_bc));
+    geometry.linearization.push_back(
+        viewGeometry(carried(frame.state.poseForJacobians(state.T_wb), rate, late), T_bc));
+    geometry.td_rates.push_back(rate);
+  }
+  for (const Pose& T_wb : values.old) {
+    geometry.present.push_back(viewGeometry(T_wb, T_bc));
+    geometry.linearization.push_back(geometry.present.back());
+    geometry.td_rates.emplace_back(Eigen::Matrix<double, 6, 1>::Zero());
+  }
+  geometry.refines_rig = window.refines_rig;
+  return geometry;
 }
 
 Eigen::Vector2d observationResidual(const BearingMeasurement& measured,
@@ -32,14 +52,18 @@ Eigen::Vector2d observationResidual(const BearingMeasurement& measured,
                          landmark, nullptr);
 }
 
+
+
 LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
                                            const LandmarkAnchor& anchor,
                                            const WindowGeometry& geometry, std::size_t host,
                                            std::size_t target, const LandmarkParameters& landmark) {
   LinearizedObservation out;
   out.target = target;
+  out.r = observationResidual(measured, anchor, geometry, host, target, landmark);
+  out.J_rig.setZero();
   if (host == target) {
-    out.r = hostResidual(measured, anchor, landmark, &out.J_landmark);
+    hostResidual(measured, anchor, landmark, &out.J_landmark);
     out.J_host.setZero();
     out.J_target.setZero();
     return out;
@@ -47,10 +71,15 @@ LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
   BearingJacobians J;
   bearingResidual(measured, anchor, geometry.linearization[host], geometry.linearization[target],
                   landmark, &J);
-  out.r = observationResidual(measured, anchor, geometry, host, target, landmark);
   out.J_host = J.J_host;
   out.J_target = J.J_target;
   out.J_landmark = J.J_landmark;
+  if (geometry.refines_rig) {
+    out.J_rig.leftCols<6>() = extrinsicJacobian(measured, anchor, geometry.linearization[host],
+                                                geometry.linearization[target], landmark);
+    out.J_rig.col(6) =
+        J.J_host * geometry.td_rates[host] + J.J_target * geometry.td_rates[target];
+  }
   return out;
 }
 
@@ -61,6 +90,7 @@ void scaleByLoss(double huber, LinearizedObservation* observation) {
   observation->J_host *= scale;
   observation->J_target *= scale;
   observation->J_landmark *= scale;
+  observation->J_rig *= scale;
   observation->r *= scale;
 }
 

@@ -19,7 +19,8 @@ using Eigen::VectorXd;
 /// go; then those of the poses and motions that stay and are touched.
 class Columns {
  public:
-  explicit Columns(std::size_t frames) : pose_(frames, -1), motion_(frames, -1) {}
+  Columns(std::size_t frames, bool refines_rig)
+      : pose_(frames, -1), motion_(frames, -1), rig_(refines_rig ? 0 : -1) {}
 
   void touchPose(std::size_t frame) { pose_[frame] = 0; }
   void touchMotion(std::size_t frame) { motion_[frame] = 0; }
@@ -30,11 +31,14 @@ class Columns {
       if (pose_[frame] >= 0) take(6, &pose_[frame]);
       if (motion_[frame] >= 0) take(9, &motion_[frame]);
     }
+    if (rig_ >= 0) take(7, &rig_);
   }
   Index pose(std::size_t frame) const { return pose_[frame]; }
   Index motion(std::size_t frame) const { return motion_[frame]; }
+  Index rig() const { return rig_; }  ///< negative where the rig is not refined
   Index of(const Prior::Part& part) const {
-    return part.motion ? motion_[part.frame] : pose_[part.frame];
+    if (part.kind == Prior::Kind::kRig) return rig_;
+    return part.kind == Prior::Kind::kMotion ? motion_[part.frame] : pose_[part.frame];
   }
   Index count() const { return count_; }
 
@@ -45,6 +49,7 @@ class Columns {
   }
   std::vector<Index> pose_;
   std::vector<Index> motion_;
+  Index rig_;
   Index count_ = 0;
 };
 
@@ -73,9 +78,10 @@ std::vector<std::int64_t> landmarksToMarginalize(const SlidingWindow& window) {
 }
 
 Columns layOut(const SlidingWindow& window, const std::vector<LinearizedLandmark>& landmarks) {
-  Columns columns(window.frames.size());
+  Columns columns(window.frames.size(), window.refines_rig);
   for (const Prior::Part& part : window.prior.parts) {
-    part.motion ? columns.touchMotion(part.frame) : columns.touchPose(part.frame);
+    if (part.kind == Prior::Kind::kPose) columns.touchPose(part.frame);
+    if (part.kind == Prior::Kind::kMotion) columns.touchMotion(part.frame);
   }
   columns.touchPose(1);
   columns.touchMotion(1);
@@ -97,18 +103,12 @@ void stackPrior(const Prior& prior, const Columns& columns, StackedSystem* syste
   rows.rightCols<1>() = prior.b;
 }
 
-/// Where a state is linearized.
-NavState linearizationPoint(const WindowState& state) {
-  NavState at = state.motionForJacobians(state.value());
-  at.T_wb = state.poseForJacobians(state.value().T_wb);
-  return at;
-}
-
 void stackImu(const SlidingWindow& window, const Columns& columns, StackedSystem* system) {
   const WindowFrame& i = window.frames[0];
   const WindowFrame& j = window.frames[1];
   const ImuJacobians J =
-      imuJacobians(j.imu, window.g_w, linearizationPoint(i.state), linearizationPoint(j.state));
+      imuJacobians(j.imu, window.g_w, i.state.linearizationPoint(i.state.value()),
+                   j.state.linearizationPoint(j.state.value()));
   const Matrix15d& weight = j.imu.sqrtInformation();
   const Vector15d r = imuResidual(j.imu, window.g_w, i.state.value(), j.state.value());
   auto rows = system->next(15);
@@ -140,11 +140,20 @@ void stackLandmark(const LinearizedLandmark& landmark, const Columns& columns,
     J_landmark.middleRows<2>(2 * i) = o.J_landmark;
     rows.block<2, 6>(2 * i, host) += o.J_host;
     rows.block<2, 6>(2 * i, columns.pose(o.target)) += o.J_target;
+    if (columns.rig() >= 0) rows.block<2, 7>(2 * i, columns.rig()) = o.J_rig;
     rows.block<2, 1>(2 * i, rows.cols() - 1) = o.r;
   }
   const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(J_landmark);
   rows.applyOnTheLeft(qr.householderQ().adjoint());
   system->next(2 * count - 3) = rows.bottomRows(2 * count - 3);
+}
+
+/// Where the rig's differences in the prior are zero: where they were so far.
+RigCalibration rigZero(const SlidingWindow& window) {
+  for (const Prior::Part& part : window.prior.parts) {
+    if (part.kind == Prior::Kind::kRig) return part.rig_at;
+  }
+  return window.rig;
 }
 
 /// Rewrites rows about the present values as rows about the first estimates.
@@ -159,6 +168,10 @@ void shiftToFirstEstimates(const SlidingWindow& window, const Columns& columns, 
     if (columns.motion(frame) >= 0) {
       rows.rightCols<1>() -= rows.middleCols<9>(columns.motion(frame)) * motionShift(state);
     }
+  }
+  if (columns.rig() >= 0) {
+    rows.rightCols<1>() -=
+        rows.middleCols<7>(columns.rig()) * minus(window.rig, rigZero(window));
   }
 }
 
@@ -194,9 +207,14 @@ Prior eliminateOldest(const SlidingWindow& window, const Columns& columns, Stack
   prior.b = R.col(kept);
   for (std::size_t frame = 1; frame < window.frames.size(); ++frame) {
     const NavState& at = window.frames[frame].state.firstEstimate();
-    if (columns.pose(frame) >= 0) prior.parts.push_back({frame - 1, false, at});
-    if (columns.motion(frame) >= 0) prior.parts.push_back({frame - 1, true, at});
+    if (columns.pose(frame) >= 0) {
+      prior.parts.push_back({Prior::Kind::kPose, frame - 1, at, {}});
+    }
+    if (columns.motion(frame) >= 0) {
+      prior.parts.push_back({Prior::Kind::kMotion, frame - 1, at, {}});
+    }
   }
+  if (columns.rig() >= 0) prior.parts.push_back({Prior::Kind::kRig, 0, {}, rigZero(window)});
   return prior;
 }
 
@@ -212,7 +230,7 @@ void fixTouchedStates(const Columns& columns, SlidingWindow* window) {
 
 void marginalizeOldest(double huber, SlidingWindow* window) {
   const std::vector<std::int64_t> ids = landmarksToMarginalize(*window);
-  const WindowGeometry geometry = geometryOf(*window);
+  const WindowGeometry geometry = geometryOf(*window, window->values());
   std::vector<LinearizedLandmark> landmarks;
   for (const std::int64_t id : ids) {
     landmarks.push_back(linearize(*window, geometry, window->landmarks.tracks().at(id), huber));

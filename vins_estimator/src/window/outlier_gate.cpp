@@ -21,10 +21,33 @@ std::vector<FrameId> outliersOf(const SlidingWindow& window, const WindowGeometr
   return frames;
 }
 
+/// Takes away what the old keyframe has seen elsewhere, or of landmarks that are no more.
+int removeLoopOutliers(const WindowGeometry& geometry, double max_squared_residual,
+                       SlidingWindow* window) {
+  if (!window->loop) return 0;
+  auto& measured = window->loop->measured;
+  const std::size_t before = measured.size();
+  const std::size_t old = window->frames.size();
+  const auto& tracks = window->landmarks.tracks();
+  for (auto it = measured.begin(); it != measured.end();) {
+    const auto track = tracks.find(it->first);
+    bool bad = track == tracks.end();
+    if (!bad && track->second.has_depth) {
+      const Landmark& landmark = track->second;
+      const Eigen::Vector2d r =
+          observationResidual(it->second, landmark.anchor, geometry,
+                              window->indexOf(landmark.host()), old, landmark.parameters);
+      bad = !(r.squaredNorm() <= max_squared_residual);
+    }
+    it = bad ? measured.erase(it) : std::next(it);
+  }
+  return static_cast<int>(before - measured.size());
+}
+
 }  // namespace
 
 int removeOutliers(const OutlierGateOptions& options, SlidingWindow* window) {
-  const WindowGeometry geometry = geometryOf(*window);
+  const WindowGeometry geometry = geometryOf(*window, window->values());
   std::vector<std::pair<std::int64_t, FrameId>> outliers;
   for (auto& [id, landmark] : window->landmarks.tracks()) {
     if (!landmark.has_depth) continue;
@@ -38,12 +61,13 @@ int removeOutliers(const OutlierGateOptions& options, SlidingWindow* window) {
       outliers.emplace_back(id, frame);
     }
   }
-  if (outliers.empty()) return 0;
+  int count = removeLoopOutliers(geometry, options.max_squared_residual, window);
+  if (outliers.empty()) return count;
   const CameraPoses cameras = window->cameras();
   for (const auto& [id, frame] : outliers) {
     window->landmarks.removeObservation(id, frame, cameras);
   }
-  return static_cast<int>(outliers.size());
+  return count + static_cast<int>(outliers.size());
 }
 
 }  // namespace vins

@@ -4,6 +4,15 @@
 
 namespace vins {
 
+WindowValues SlidingWindow::values() const {
+  WindowValues values;
+  values.states.reserve(frames.size());
+  for (const WindowFrame& frame : frames) values.states.push_back(frame.state.value());
+  if (loop) values.old.push_back(loop->T_wb);
+  values.rig = rig;
+  return values;
+}
+
 std::size_t SlidingWindow::indexOf(FrameId id) const {
   const auto it =
       std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.id == id; });
@@ -13,7 +22,7 @@ std::size_t SlidingWindow::indexOf(FrameId id) const {
 CameraPoses SlidingWindow::cameras() const {
   CameraPoses cameras;
   for (const WindowFrame& frame : frames) {
-    cameras.emplace_hint(cameras.end(), frame.id, frame.state.value().T_wb * T_bc);
+    cameras.emplace_hint(cameras.end(), frame.id, frame.state.value().T_wb * rig.T_bc);
   }
   return cameras;
 }
@@ -28,7 +37,7 @@ void dropFrame(SlidingWindow* window, std::size_t index) {
   }
   frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(index));
   for (Prior::Part& part : window->prior.parts) {
-    if (part.frame > index) --part.frame;
+    if (part.kind != Prior::Kind::kRig && part.frame > index) --part.frame;
   }
 }
 

@@ -17,16 +17,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The whole window as one residual of the poses, whose square is the cost and whose Jacobian is
-/// the square root of the poses' information. Ceres asks for a trial step's cost first, and for
+/// Poses that Ceres moves: of the views, then T_bc where the rig is refined.
+std::vector<Pose> posesOf(const WindowValues& values, bool refines_rig) {
+  std::vector<Pose> poses;
+  for (const NavState& state : values.states) poses.push_back(state.T_wb);
+  poses.insert(poses.end(), values.old.begin(), values.old.end());
+  if (refines_rig) poses.push_back(values.rig.T_bc);
+  return poses;
+}
+
+/// The whole window as one residual of the poses (and td, where the rig is refined), whose square is
+/// the cost and whose Jacobian is the square root of their information. Ceres asks for a trial step's cost first, and for
 /// Jacobians at the same poses if it takes the step: that is when the system is linearized anew.
 class ReducedWindowFactor : public ceres::CostFunction {
  public:
   explicit ReducedWindowFactor(WindowSystem* system)
       : system_(*system), at_(system->present()), trial_(at_), best_(at_) {
-    const auto frames = static_cast<int>(system->frameCount());
-    for (int i = 0; i < frames; ++i) mutable_parameter_block_sizes()->push_back(7);
-    set_num_residuals(6 * frames + 1);
+    const std::size_t poses = posesOf(at_.values, system->refinesRig()).size();
+    mutable_parameter_block_sizes()->assign(poses, 7);
+    if (system->refinesRig()) mutable_parameter_block_sizes()->push_back(1);
+    set_num_residuals(static_cast<int>(system->stepCount()) + 1);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -45,11 +55,13 @@ class ReducedWindowFactor : public ceres::CostFunction {
 
  private:
   VectorXd stepsTo(double const* const* parameters) const {
-    VectorXd steps(static_cast<Index>(6 * at_.states.size()));
-    for (std::size_t i = 0; i < at_.states.size(); ++i) {
-      const PoseBlock from = toPoseBlock(at_.states[i].T_wb);
+    const std::vector<Pose> poses = posesOf(at_.values, system_.refinesRig());
+    VectorXd steps(system_.stepCount());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const PoseBlock from = toPoseBlock(poses[i]);
       manifold_.Minus(parameters[i], from.data(), steps.data() + 6 * i);
     }
+    if (system_.refinesRig()) steps.tail<1>()[0] = *parameters[poses.size()] - at_.values.rig.td;
     return steps;
   }
 
@@ -73,15 +85,25 @@ class ReducedWindowFactor : public ceres::CostFunction {
     const VectorXd y = system_.sqrtGradient();
     r->head(y.size()) = y;
     r->tail<1>()[0] = std::sqrt(std::max(0.0, 2.0 * cost - y.squaredNorm()));
-    const MatrixXd R = system_.sqrtInformation();
-    for (std::size_t i = 0; i < at_.states.size(); ++i) {
-      if (jacobians[i] == nullptr) continue;
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor>> J(jacobians[i],
-                                                                              num_residuals(), 7);
-      J.setZero();
-      J.topLeftCorner(R.rows(), 6) = R.middleCols<6>(static_cast<Index>(6 * i));
-    }
+    writeJacobians(system_.sqrtInformation(), jacobians);
     return true;
+  }
+
+  void writeJacobians(const MatrixXd& R, double** jacobians) const {
+    const std::vector<int>& sizes = parameter_block_sizes();
+    Index column = 0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      const Index count = sizes[i] == 7 ? 6 : 1;  // of the tangent space
+      if (jacobians[i] != nullptr) {
+        using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+        // A matrix of one column has one order only, which Eigen wants to be told.
+        Eigen::Map<RowMajor, 0, Eigen::OuterStride<>> J(jacobians[i], num_residuals(), sizes[i],
+                                                        Eigen::OuterStride<>(sizes[i]));
+        J.setZero();
+        J.topLeftCorner(R.rows(), count) = R.middleCols(column, count);
+      }
+      column += count;
+    }
   }
 
   WindowSystem& system_;
@@ -128,9 +150,12 @@ void refreshIntegrations(SlidingWindow* window) {
   }
 }
 
-ceres::Solver::Summary minimize(const WindowSolverOptions& options, ReducedWindowFactor* factor) {
+ceres::Solver::Summary minimize(const WindowSolverOptions& options, bool refines_rig,
+                                ReducedWindowFactor* factor) {
+  const WindowValues& start = factor->solution().values;
   std::vector<PoseBlock> poses;
-  for (const NavState& state : factor->solution().states) poses.push_back(toPoseBlock(state.T_wb));
+  for (const Pose& pose : posesOf(start, refines_rig)) poses.push_back(toPoseBlock(pose));
+  double td = start.rig.td;
   PoseManifold manifold;
   ceres::Problem problem(problemOptions());
   std::vector<double*> blocks;
@@ -138,10 +163,26 @@ ceres::Solver::Summary minimize(const WindowSolverOptions& options, ReducedWindo
     problem.AddParameterBlock(pose.data(), 7, &manifold);
     blocks.push_back(pose.data());
   }
+  if (refines_rig) {
+    problem.AddParameterBlock(&td, 1);
+    blocks.push_back(&td);
+  }
   problem.AddResidualBlock(factor, nullptr, blocks);
   ceres::Solver::Summary summary;
   ceres::Solve(solverOptions(options), &problem, &summary);
   return summary;
+}
+
+/// The loop's relative pose; nothing when its query has gone.
+std::optional<LoopEstimate> loopEstimate(const SlidingWindow& window, const WindowSystem& system) {
+  for (std::size_t i = 0; i < window.frames.size(); ++i) {
+    if (window.frames[i].keyframe_id != window.loop->query_id) continue;
+    LoopEstimate loop;
+    loop.T_old_query = window.loop->T_wb.inverse() * window.frames[i].state.value().T_wb;
+    loop.covariance = system.relativeCovariance(window.frames.size(), i);
+    return loop;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -150,7 +191,7 @@ SolveSummary solveWindow(const WindowSolverOptions& options, SlidingWindow* wind
   refreshIntegrations(window);
   WindowSystem system(*window, options.huber);
   ReducedWindowFactor factor(&system);
-  const ceres::Solver::Summary ceres_summary = minimize(options, &factor);
+  const ceres::Solver::Summary ceres_summary = minimize(options, window->refines_rig, &factor);
   SolveSummary summary;
   summary.usable = ceres_summary.IsSolutionUsable();
   summary.iterations = static_cast<int>(ceres_summary.iterations.size()) - 1;
@@ -164,6 +205,8 @@ SolveSummary solveWindow(const WindowSolverOptions& options, SlidingWindow* wind
   if (!summary.usable) return summary;
   system.writeTo(factor.solution(), window);
   summary.newest_covariance = system.newestCovariance();
+  summary.rig_covariance = system.rigCovariance();
+  if (window->loop) summary.loop = loopEstimate(*window, system);
   return summary;
 }
 

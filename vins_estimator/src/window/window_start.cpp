@@ -1,5 +1,8 @@
 #include "vins_estimator/window/window_start.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
 #include "vins_estimator/visual/triangulation.h"
 
 namespace vins {
@@ -9,11 +12,21 @@ namespace {
 /// about the world's axes, since yaw and tilt are known differently.
 Prior firstPrior(const NavState& first, const NavState& mean, const Vector15d& sigma) {
   Prior prior;
-  prior.parts = {{0, false, first}, {0, true, first}};
+  prior.parts = {{Prior::Kind::kPose, 0, first, {}}, {Prior::Kind::kMotion, 0, first, {}}};
   prior.A = sigma.cwiseInverse().asDiagonal();
   prior.A.block<3, 3>(kRotation, kRotation) *= first.T_wb.rotation.toRotationMatrix();
   prior.b = prior.A * minus(first, mean);
   return prior;
+}
+
+/// Adds what is known of the rig: that it is as it stands in the window, with this covariance.
+void addRigPrior(const RigCalibration& rig, const Matrix7d& covariance, Prior* prior) {
+  const Eigen::Index rows = prior->A.rows();
+  const Eigen::Index columns = prior->A.cols();
+  prior->parts.push_back({Prior::Kind::kRig, 0, {}, rig});
+  prior->A.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + 7, columns + 7));
+  prior->A.bottomRightCorner<7, 7>() = covariance.inverse().llt().matrixU();
+  prior->b.conservativeResizeLike(Eigen::VectorXd::Zero(rows + 7));
 }
 
 constexpr std::size_t kViewsWithoutParallax = 3;
@@ -44,11 +57,14 @@ void startWindow(const Initialization& initialization, FrameId first_id, Sliding
   for (const InitialFrame& initial : initialization.frames) {
     WindowFrame frame{id++, initial.features.stamp, WindowState(initial.state), initial.imu};
     frame.stands_still = initialization.at_rest;
+    frame.td = window->rig.td;
+    frame.measured_rate = initial.measured_rate;
     window->landmarks.addFrame(frame.id, initial.features);
     window->frames.push_back(std::move(frame));
   }
   WindowState& first = window->frames.front().state;
   window->prior = firstPrior(first.value(), initialization.mean, initialization.sigma);
+  if (window->refines_rig) addRigPrior(window->rig, window->rig_covariance, &window->prior);
   first.fixPose();
   first.fixMotion();
 }

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <map>
 
+#include "vins_core/so3.h"
 #include "vins_estimator/factors/imu_factor.h"
+#include "vins_estimator/factors/upright_factor.h"
 
 namespace vins {
 namespace {
@@ -12,12 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-NavState linearizationPoint(const WindowState& state, const NavState& value) {
-  NavState at = state.motionForJacobians(value);
-  at.T_wb = state.poseForJacobians(value.T_wb);
-  return at;
-}
 
 /// Huber's loss of a residual's length.
 double robustCost(double huber, double length) {
@@ -32,28 +28,42 @@ WindowSystem::WindowSystem(const SlidingWindow& window, double huber)
   for (std::size_t i = 0; i < window.frames.size(); ++i) index[window.frames[i].id] = i;
   for (const auto& [id, landmark] : window.landmarks.tracks()) {
     if (!landmark.has_depth) continue;
-    const std::size_t begin = observations_.size();
-    for (const TrackObservation& observation : landmark.observations) {
-      observations_.push_back({&observation, index.at(observation.frame)});
-    }
-    landmarks_.push_back({&landmark, observations_[begin].target, begin, observations_.size()});
+    collectObservations(index, landmark);
   }
   W_.resize(observations_.size());
   eliminations_.resize(landmarks_.size());
   preparePrior();
 }
 
+void WindowSystem::collectObservations(const std::map<FrameId, std::size_t>& index,
+                                       const Landmark& landmark) {
+  const std::size_t begin = observations_.size();
+  for (const TrackObservation& observation : landmark.observations) {
+    observations_.push_back({&observation.measured, index.at(observation.frame)});
+  }
+  if (window_.loop) {
+    const auto old = window_.loop->measured.find(landmark.id);
+    if (old != window_.loop->measured.end()) {
+      observations_.push_back({&old->second, frameCount()});
+    }
+  }
+  landmarks_.push_back({&landmark, observations_[begin].target, begin, observations_.size()});
+}
+
 WindowSystem::Point WindowSystem::present() const {
   Point point;
-  for (const WindowFrame& frame : window_.frames) point.states.push_back(frame.state.value());
+  point.values = window_.values();
   for (const FlatLandmark& flat : landmarks_) point.landmarks.push_back(flat.landmark->parameters);
   return point;
 }
 
 void WindowSystem::writeTo(const Point& point, SlidingWindow* window) const {
-  for (std::size_t i = 0; i < point.states.size(); ++i) {
-    window->frames[i].state.setValue(point.states[i]);
+  const WindowValues& values = point.values;
+  for (std::size_t i = 0; i < values.states.size(); ++i) {
+    window->frames[i].state.setValue(values.states[i]);
   }
+  if (window->loop) window->loop->T_wb = values.old.front();
+  window->rig = values.rig;
   for (std::size_t k = 0; k < landmarks_.size(); ++k) {
     window->landmarks.tracks().at(landmarks_[k].landmark->id).parameters = point.landmarks[k];
   }
@@ -61,17 +71,19 @@ void WindowSystem::writeTo(const Point& point, SlidingWindow* window) const {
 
 Index WindowSystem::motionColumn(std::size_t frame) { return static_cast<Index>(9 * frame); }
 
-Index WindowSystem::poseColumn(std::size_t frame) const {
-  return static_cast<Index>(9 * frameCount() + 6 * frame);
+Index WindowSystem::poseColumn(std::size_t view) const {
+  return static_cast<Index>(9 * frameCount() + 6 * view);
 }
 
+Index WindowSystem::stepCount() const { return size() - poseColumn(0); }
+
 Index WindowSystem::column(const Prior::Part& part) const {
-  return part.motion ? motionColumn(part.frame) : poseColumn(part.frame);
+  if (part.kind == Prior::Kind::kRig) return rigColumn();
+  return part.kind == Prior::Kind::kMotion ? motionColumn(part.frame) : poseColumn(part.frame);
 }
 
 void WindowSystem::preparePrior() {
-  const auto size = static_cast<Index>(15 * frameCount());
-  prior_information_ = MatrixXd::Zero(size, size);
+  prior_information_ = MatrixXd::Zero(size(), size());
   const MatrixXd information = window_.prior.A.transpose() * window_.prior.A;
   Index row = 0;
   for (const Prior::Part& a : window_.prior.parts) {
@@ -86,14 +98,14 @@ void WindowSystem::preparePrior() {
 }
 
 double WindowSystem::bearingCost(const Point& point) const {
-  const WindowGeometry geometry = geometryOf(window_, point.states);
+  const WindowGeometry geometry = geometryOf(window_, point.values);
   double cost = 0.0;
   for (std::size_t index = 0; index < landmarks_.size(); ++index) {
     const FlatLandmark& flat = landmarks_[index];
     for (std::size_t k = flat.begin; k < flat.end; ++k) {
       const Eigen::Vector2d r =
-          observationResidual(observations_[k].observation->measured, flat.landmark->anchor,
-                              geometry, flat.host, observations_[k].target, point.landmarks[index]);
+          observationResidual(*observations_[k].measured, flat.landmark->anchor, geometry,
+                              flat.host, observations_[k].target, point.landmarks[index]);
       cost += robustCost(huber_, r.norm());
     }
   }
@@ -105,7 +117,7 @@ VectorXd WindowSystem::priorResidual(const Point& point) const {
   VectorXd d(prior.columns());
   Index row = 0;
   for (const Prior::Part& part : prior.parts) {
-    d.segment(row, part.size()) = priorDifference(part, point.states[part.frame]);
+    d.segment(row, part.size()) = priorDifference(part, point.values.states[part.frame], point.values.rig);
     row += part.size();
   }
   return prior.A * d + prior.b;
@@ -113,14 +125,20 @@ VectorXd WindowSystem::priorResidual(const Point& point) const {
 
 double WindowSystem::cost(const Point& point) const {
   double cost = bearingCost(point);
+  const std::vector<NavState>& states = point.values.states;
   for (std::size_t i = 1; i < frameCount(); ++i) {
     const Preintegration& imu = window_.frames[i].imu;
-    const Vector15d r = imuResidual(imu, window_.g_w, point.states[i - 1], point.states[i]);
+    const Vector15d r = imuResidual(imu, window_.g_w, states[i - 1], states[i]);
     cost += 0.5 * (imu.sqrtInformation() * r).squaredNorm();
   }
   for (std::size_t i = 0; i < frameCount(); ++i) {
     if (!window_.frames[i].stands_still) continue;
-    cost += 0.5 * (point.states[i].v_w / window_.still_velocity).squaredNorm();
+    cost += 0.5 * (states[i].v_w / window_.still_velocity).squaredNorm();
+  }
+  if (window_.loop) {
+    cost += 0.5 * uprightResidual(window_.loop->up_b, 1.0 / window_.old_tilt,
+                                  point.values.old.front().rotation, nullptr)
+                      .squaredNorm();
   }
   if (!window_.prior.empty()) cost += 0.5 * priorResidual(point).squaredNorm();
   return cost;
@@ -128,13 +146,13 @@ double WindowSystem::cost(const Point& point) const {
 
 bool WindowSystem::linearize(const Point& point) {
   at_ = point;
-  geometry_ = geometryOf(window_, point.states);
-  const auto size = static_cast<Index>(15 * frameCount());
+  geometry_ = geometryOf(window_, point.values);
   H_ = prior_information_;
-  g_ = VectorXd::Zero(size);
+  g_ = VectorXd::Zero(size());
   for (std::size_t k = 0; k < landmarks_.size(); ++k) addLandmark(k);
   for (std::size_t i = 1; i < frameCount(); ++i) addImu(i);
   for (std::size_t i = 0; i < frameCount(); ++i) addStillness(i);
+  addOldTilt();
   addPrior();
   llt_.compute(H_);
   if (llt_.info() != Eigen::Success) return false;
@@ -145,31 +163,48 @@ bool WindowSystem::linearize(const Point& point) {
 void WindowSystem::addLandmark(std::size_t index) {
   const FlatLandmark& landmark = landmarks_[index];
   Eigen::Matrix3d H_ll = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g_l = Eigen::Vector3d::Zero();
   Matrix63d W_host = Matrix63d::Zero();
-  const Index host = poseColumn(landmark.host);
+  Elimination& elimination = eliminations_[index];
+  elimination.g.setZero();
+  elimination.W_rig.setZero();
   for (std::size_t k = landmark.begin; k < landmark.end; ++k) {
     LinearizedObservation o = linearizeObservation(
-        observations_[k].observation->measured, landmark.landmark->anchor, geometry_, landmark.host,
+        *observations_[k].measured, landmark.landmark->anchor, geometry_, landmark.host,
         observations_[k].target, at_.landmarks[index]);
     scaleByLoss(huber_, &o);
     H_ll += o.J_landmark.transpose() * o.J_landmark;
-    g_l += o.J_landmark.transpose() * o.r;
+    elimination.g += o.J_landmark.transpose() * o.r;
+    if (refinesRig()) addRig(o, landmark.host, &elimination);
     if (k == landmark.begin) continue;
     W_host += o.J_host.transpose() * o.J_landmark;
     W_[k] = o.J_target.transpose() * o.J_landmark;
-    const Index target = poseColumn(o.target);
-    H_.block<6, 6>(host, host) += o.J_host.transpose() * o.J_host;
-    H_.block<6, 6>(target, target) += o.J_target.transpose() * o.J_target;
-    // The lower triangle only; the host stands before every target.
-    H_.block<6, 6>(target, host) += o.J_target.transpose() * o.J_host;
-    g_.segment<6>(host) += o.J_host.transpose() * o.r;
-    g_.segment<6>(target) += o.J_target.transpose() * o.r;
+    addObservation(o, landmark.host);
   }
   W_[landmark.begin] = W_host;
   H_ll.diagonal().array() += kLandmarkDamping;
-  eliminations_[index] = {H_ll.inverse(), g_l};
+  elimination.H_inverse = H_ll.inverse();
   eliminate(index);
+}
+
+void WindowSystem::addObservation(const LinearizedObservation& o, std::size_t host_view) {
+  const Index host = poseColumn(host_view);
+  const Index target = poseColumn(o.target);
+  H_.block<6, 6>(host, host) += o.J_host.transpose() * o.J_host;
+  H_.block<6, 6>(target, target) += o.J_target.transpose() * o.J_target;
+  // The lower triangle only; the host stands before every target.
+  H_.block<6, 6>(target, host) += o.J_target.transpose() * o.J_host;
+  g_.segment<6>(host) += o.J_host.transpose() * o.r;
+  g_.segment<6>(target) += o.J_target.transpose() * o.r;
+}
+
+void WindowSystem::addRig(const LinearizedObservation& o, std::size_t host,
+                          Elimination* elimination) {
+  const Index rig = rigColumn();
+  H_.block<7, 7>(rig, rig) += o.J_rig.transpose() * o.J_rig;
+  H_.block<7, 6>(rig, poseColumn(host)) += o.J_rig.transpose() * o.J_host;
+  H_.block<7, 6>(rig, poseColumn(o.target)) += o.J_rig.transpose() * o.J_target;
+  g_.segment<7>(rig) += o.J_rig.transpose() * o.r;
+  elimination->W_rig += o.J_rig.transpose() * o.J_landmark;
 }
 
 void WindowSystem::eliminate(std::size_t index) {
@@ -183,16 +218,27 @@ void WindowSystem::eliminate(std::size_t index) {
       H_.block<6, 6>(row, poseColumn(observations_[b].target)) -= left * W_[b].transpose();
     }
   }
+  if (refinesRig()) eliminateFromRig(landmark, elimination);
+}
+
+void WindowSystem::eliminateFromRig(const FlatLandmark& landmark, const Elimination& elimination) {
+  const Index rig = rigColumn();
+  const Matrix73d left = elimination.W_rig * elimination.H_inverse;
+  g_.segment<7>(rig) -= left * elimination.g;
+  H_.block<7, 7>(rig, rig) -= left * elimination.W_rig.transpose();
+  for (std::size_t b = landmark.begin; b < landmark.end; ++b) {
+    H_.block<7, 6>(rig, poseColumn(observations_[b].target)) -= left * W_[b].transpose();
+  }
 }
 
 void WindowSystem::addImu(std::size_t frame) {
   const WindowState& from = window_.frames[frame - 1].state;
   const WindowState& to = window_.frames[frame].state;
   const Preintegration& imu = window_.frames[frame].imu;
-  const NavState& value_i = at_.states[frame - 1];
-  const NavState& value_j = at_.states[frame];
-  const ImuJacobians J = imuJacobians(imu, window_.g_w, linearizationPoint(from, value_i),
-                                      linearizationPoint(to, value_j));
+  const NavState& value_i = at_.values.states[frame - 1];
+  const NavState& value_j = at_.values.states[frame];
+  const ImuJacobians J = imuJacobians(imu, window_.g_w, from.linearizationPoint(value_i),
+                                      to.linearizationPoint(value_j));
   // Motions i and j, then poses i and j: as the system has them.
   Eigen::Matrix<double, 15, 30> whole;
   whole << J.J_motion_i, J.J_motion_j, J.J_pose_i, J.J_pose_j;
@@ -214,7 +260,17 @@ void WindowSystem::addStillness(std::size_t frame) {
   const double weight = 1.0 / (window_.still_velocity * window_.still_velocity);
   const Index velocity = motionColumn(frame);
   H_.diagonal().segment<3>(velocity).array() += weight;
-  g_.segment<3>(velocity) += weight * at_.states[frame].v_w;
+  g_.segment<3>(velocity) += weight * at_.values.states[frame].v_w;
+}
+
+void WindowSystem::addOldTilt() {
+  if (!window_.loop) return;
+  Eigen::Matrix<double, 2, 3> J;
+  const Eigen::Vector2d r = uprightResidual(window_.loop->up_b, 1.0 / window_.old_tilt,
+                                            at_.values.old.front().rotation, &J);
+  const Index rotation = poseColumn(frameCount()) + 3;
+  H_.block<3, 3>(rotation, rotation) += J.transpose() * J;
+  g_.segment<3>(rotation) += J.transpose() * r;
 }
 
 void WindowSystem::addPrior() {
@@ -228,40 +284,55 @@ void WindowSystem::addPrior() {
 }
 
 MatrixXd WindowSystem::sqrtInformation() const {
-  const auto poses = static_cast<Index>(6 * frameCount());
-  const auto L = llt_.matrixLLT().bottomRightCorner(poses, poses);
+  const auto L = llt_.matrixLLT().bottomRightCorner(stepCount(), stepCount());
   return MatrixXd(L.triangularView<Eigen::Lower>()).transpose();
 }
 
 VectorXd WindowSystem::sqrtGradient() const {
-  return y_.tail(static_cast<Index>(6 * frameCount()));
+  return y_.tail(stepCount());
 }
 
-WindowSystem::Point WindowSystem::moved(const VectorXd& pose_steps) const {
+VectorXd WindowSystem::motionSteps(const VectorXd& steps) const {
   const auto motions = static_cast<Index>(9 * frameCount());
   const auto L = llt_.matrixLLT();
-  // L_mm^T d_m = -(y_m + L_pm^T d_p)
-  VectorXd motion_steps = -(
-      y_.head(motions) + L.bottomLeftCorner(L.rows() - motions, motions).transpose() * pose_steps);
+  // L_mm^T d_m = -(y_m + L_sm^T d_s)
+  VectorXd motion_steps =
+      -(y_.head(motions) + L.bottomLeftCorner(stepCount(), motions).transpose() * steps);
   L.topLeftCorner(motions, motions)
       .triangularView<Eigen::Lower>()
       .transpose()
       .solveInPlace(motion_steps);
+  return motion_steps;
+}
+
+WindowSystem::Point WindowSystem::moved(const VectorXd& steps) const {
+  const VectorXd motion_steps = motionSteps(steps);
   Point point = at_;
   for (std::size_t i = 0; i < frameCount(); ++i) {
     Vector15d d;
-    d << pose_steps.segment<6>(static_cast<Index>(6 * i)), motion_steps.segment<9>(motionColumn(i));
-    point.states[i] = plus(at_.states[i], d);
+    d << steps.segment<6>(static_cast<Index>(6 * i)), motion_steps.segment<9>(motionColumn(i));
+    point.values.states[i] = plus(at_.values.states[i], d);
   }
+  for (Pose& old : point.values.old) {
+    const Eigen::Matrix<double, 6, 1> d = steps.segment<6>(static_cast<Index>(6 * frameCount()));
+    old.position += d.head<3>();
+    old.rotation = (old.rotation * so3::exp(Eigen::Vector3d(d.tail<3>()))).normalized();
+  }
+  if (refinesRig()) point.values.rig = plus(at_.values.rig, Vector7d(steps.tail<7>()));
+  moveLandmarks(steps, &point.landmarks);
+  return point;
+}
+
+void WindowSystem::moveLandmarks(const VectorXd& steps,
+                                 std::vector<LandmarkParameters>* landmarks) const {
   for (std::size_t k = 0; k < landmarks_.size(); ++k) {
     Eigen::Vector3d g = eliminations_[k].g;
     for (std::size_t a = landmarks_[k].begin; a < landmarks_[k].end; ++a) {
-      g += W_[a].transpose() *
-           pose_steps.segment<6>(static_cast<Index>(6 * observations_[a].target));
+      g += W_[a].transpose() * steps.segment<6>(static_cast<Index>(6 * observations_[a].target));
     }
-    point.landmarks[k] -= eliminations_[k].H_inverse * g;
+    if (refinesRig()) g += eliminations_[k].W_rig.transpose() * steps.tail<7>();
+    (*landmarks)[k] -= eliminations_[k].H_inverse * g;
   }
-  return point;
 }
 
 Matrix15d WindowSystem::newestCovariance() const {
@@ -271,6 +342,33 @@ Matrix15d WindowSystem::newestCovariance() const {
   selection.block<9, 9>(motionColumn(newest), 6).setIdentity();
   llt_.matrixL().solveInPlace(selection);
   return selection.transpose() * selection;
+}
+
+Matrix7d WindowSystem::rigCovariance() const {
+  if (!refinesRig()) return Matrix7d::Zero();
+  MatrixXd selection = MatrixXd::Zero(H_.rows(), 7);
+  selection.bottomRows<7>().setIdentity();
+  llt_.matrixL().solveInPlace(selection);
+  return selection.transpose() * selection;
+}
+
+Eigen::Matrix<double, 6, 6> WindowSystem::relativeCovariance(std::size_t a, std::size_t b) const {
+  const Pose T_wa = poseOf(a);
+  const Pose T_ab = T_wa.inverse() * poseOf(b);
+  const Eigen::Matrix3d R_aw = T_wa.rotation.conjugate().toRotationMatrix();
+  // Rows: derivatives of position and rotation (right) of T_ab by the two poses' errors.
+  MatrixXd selection = MatrixXd::Zero(H_.rows(), 6);
+  selection.block<3, 3>(poseColumn(a), 0) = -R_aw.transpose();
+  selection.block<3, 3>(poseColumn(a) + 3, 0) = so3::hat(T_ab.position).transpose();
+  selection.block<3, 3>(poseColumn(b), 0) = R_aw.transpose();
+  selection.block<3, 3>(poseColumn(a) + 3, 3) = -T_ab.rotation.toRotationMatrix();
+  selection.block<3, 3>(poseColumn(b) + 3, 3).setIdentity();
+  llt_.matrixL().solveInPlace(selection);
+  return selection.transpose() * selection;
+}
+
+const Pose& WindowSystem::poseOf(std::size_t view) const {
+  return view < frameCount() ? at_.values.states[view].T_wb : at_.values.old[view - frameCount()];
 }
 
 MatrixXd WindowSystem::information() const {

@@ -27,6 +27,11 @@ struct ImuJacobians {
 ImuJacobians imuJacobians(const Preintegration& imu, const Eigen::Vector3d& g_w, const NavState& i,
                           const NavState& j);
 
+/// Covariance, by ErrorState, of the state that the IMU predicts from state i, whose errors have
+/// `covariance`.
+Matrix15d carriedCovariance(const Preintegration& imu, const Eigen::Vector3d& g_w,
+                            const NavState& i, const Matrix15d& covariance);
+
 /// The weighted residual for Ceres. Parameter blocks: pose i (7), motion i (9), pose j, motion j,
 /// as in parameter_blocks.h. What it refers to must outlive it. Jacobians are taken at the states'
 /// first estimates where they have one.

@@ -6,19 +6,22 @@
 #include <ceres/cost_function.h>
 
 #include "vins_estimator/inertial/nav_state.h"
+#include "vins_estimator/inertial/rig_calibration.h"
 
 namespace vins {
 
 /// What is known of a group of states in square-root form: residual = A d + b, d being the states'
 /// differences from the values `at`, stacked: six numbers for a pose (position, rotation), nine for
-/// a motion (velocity, biases).
+/// a motion (velocity, biases), seven for the rig (T_bc, td).
 struct Prior {
+  enum class Kind { kPose, kMotion, kRig };
   /// One part of the stacked difference.
   struct Part {
-    std::size_t frame = 0;  ///< index of the state in the window
-    bool motion = false;    ///< velocity and biases, or else the pose
-    NavState at;            ///< where the difference is zero
-    int size() const { return motion ? 9 : 6; }
+    Kind kind = Kind::kPose;
+    std::size_t frame = 0;  ///< index of the state in the window; 0 for the rig
+    NavState at;            ///< where the difference of a pose or motion is zero
+    RigCalibration rig_at;  ///< the same for the rig
+    int size() const;
   };
   std::vector<Part> parts;
   Eigen::MatrixXd A;  ///< rows x sum of the parts' sizes
@@ -28,10 +31,12 @@ struct Prior {
   int columns() const;
 };
 
-/// Difference of a pose (6) or motion (9) part from its zero.
-Eigen::VectorXd priorDifference(const Prior::Part& part, const NavState& state);
+/// Difference of a part from its zero; `state` is the one of its frame.
+Eigen::VectorXd priorDifference(const Prior::Part& part, const NavState& state,
+                                const RigCalibration& rig);
 
-/// A Prior for Ceres. Parameter blocks: one for each part, pose (7) or motion (9). The Jacobian is
+/// A Prior on states (without a rig) for Ceres. Parameter blocks: one for each part, pose (7) or
+/// motion (9). The Jacobian is
 /// A wherever the states go, which keeps the null space. The prior must outlive it.
 class PriorFactor : public ceres::CostFunction {
  public:

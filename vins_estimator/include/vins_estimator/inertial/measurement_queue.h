@@ -34,6 +34,9 @@ struct FrameMeasurements {
   /// From exactly `begin` to exactly `end`, stamps rising; the first and the last are interpolated.
   /// With a first frame: what there is of the time `lead_in` before it.
   std::vector<ImuSample> imu;
+  /// After `end`, while the camera read its rows: from exactly `end` to the first at or after
+  /// end + readout. Empty without a readout.
+  std::vector<ImuSample> readout;
   Stamp begin = 0;           ///< end of the previous frame's interval [ns, the IMU's clock]
   Stamp end = 0;             ///< this frame's stamp + td [ns, the IMU's clock]
   double longest_gap = 0.0;  ///< between neighbouring samples as they came, on the way [s]
@@ -53,9 +56,9 @@ class MeasurementQueue {
   void addImu(const ImuSample& sample);
   void addFrame(const FeatureFrame& frame);
 
-  /// The oldest frame whose samples have all come. `td` [s] may change a little from call to call:
-  /// an interval begins where the one before has ended.
-  std::optional<FrameMeasurements> next(double td);
+  /// The oldest frame whose samples have all come, up to `readout` [s] after it. `td` [s] may change
+  /// a little from call to call: an interval begins where the one before has ended.
+  std::optional<FrameMeasurements> next(double td, double readout = 0.0);
 
   /// What has happened since the last call.
   std::vector<Event> takeEvents();
@@ -83,7 +86,8 @@ class MeasurementQueue {
   void jumpBack(Stamp from, Stamp to);
   bool isFarAhead(Stamp stamp) const;
   void dropEarlyFrame();
-  FrameMeasurements cutOut(Stamp end);
+  FrameMeasurements cutOut(Stamp end, double readout);
+  void addReadout(double readout, FrameMeasurements* cut) const;
   void addSamples(FrameMeasurements* cut) const;
   ImuSample sampleAt(Stamp stamp) const;
   void forgetUntil(Stamp stamp);

@@ -68,6 +68,12 @@ class WindowState {
   const NavState& motionForJacobians(const NavState& current) const {
     return motion_fixed_ && !ignore_first_estimates_ ? first_estimate_ : current;
   }
+  /// Where the whole state is linearized.
+  NavState linearizationPoint(const NavState& current) const {
+    NavState at = motionForJacobians(current);
+    at.T_wb = poseForJacobians(current.T_wb);
+    return at;
+  }
   /// What the prior's differences are taken from.
   const NavState& firstEstimate() const { return first_estimate_; }
 

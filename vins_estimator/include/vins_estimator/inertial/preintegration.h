@@ -22,10 +22,10 @@ class Preintegration {
                  const Eigen::Vector3d& gyroscope_bias);
 
   /// Carries on over neighbouring samples, which have rising stamps; the first must be the last one
-  /// of the samples before (same stamp), or the very first. `noise_scale`: the white noise of this
-  /// piece is this many times the usual (an interval that lacks samples). Where the samples show
-  /// vibration, the accelerometer's noise is raised by ImuNoise::vibration_share of it.
-  void integrate(const std::vector<ImuSample>& samples, double noise_scale = 1.0);
+  /// of the samples before (same stamp), or the very first. Where the samples show vibration, the
+  /// accelerometer's noise is raised by ImuNoise::vibration_share of it; over a gap between two of
+  /// them the noise is that of a motion that nobody saw.
+  void integrate(const std::vector<ImuSample>& samples);
 
   /// Carries on over the samples of the interval that follows.
   void append(const Preintegration& next);
@@ -69,18 +69,13 @@ class Preintegration {
   NavState predict(const NavState& state, const Eigen::Vector3d& g_w) const;
 
  private:
-  /// Samples in a row, with their noise.
-  struct Piece {
-    std::vector<ImuSample> samples;
-    double noise_scale;
-  };
-  void integratePiece(const Piece& piece);
+  void integratePiece(const std::vector<ImuSample>& samples);
   void step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise);
 
   ImuNoise noise_;
   Eigen::Vector3d accelerometer_bias_;
   Eigen::Vector3d gyroscope_bias_;
-  std::vector<Piece> pieces_;
+  std::vector<std::vector<ImuSample>> pieces_;  ///< samples in a row
 
   double duration_ = 0.0;
   Eigen::Vector3d alpha_ = Eigen::Vector3d::Zero();

@@ -13,6 +13,7 @@ struct InitialFrame {
   FeatureFrame features;
   NavState state;
   Preintegration imu;  ///< from the frame before; empty for the first
+  Eigen::Vector3d measured_rate = Eigen::Vector3d::Zero();  ///< of the gyroscope, then [rad/s]
 };
 
 /// The states with which the estimator starts.

@@ -33,7 +33,6 @@ struct InitializerOptions {
   int attempt_interval = 4;       ///< frames between attempts at a moving start
   double report_interval = 1.0;   ///< between events that tell why it waits [s]
   double max_gap = 0.05;          ///< between IMU samples; after a longer one it begins anew [s]
-  double gap_noise_scale = 10.0;  ///< of the IMU's white noise over an interval with a gap
   std::uint64_t seed = 1;         ///< of the random samples
   StillnessOptions stillness;     ///< its gravity is imu.gravity, whatever it says
   StaticInitializerOptions at_rest;
@@ -62,6 +61,9 @@ class Initializer {
 
   /// What there is to tell since the last call.
   std::vector<Event> takeEvents();
+
+  /// Where the camera stands in the body frame, from now on.
+  void setExtrinsic(const Pose& T_bc) { options_.T_bc = T_bc; }
 
   /// Forgets all measurements; random samples begin anew.
   void clear();

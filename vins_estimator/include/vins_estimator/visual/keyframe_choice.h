@@ -22,6 +22,7 @@ struct KeyframeChoiceOptions {
   double min_parallax = 10.0;     ///< against the last keyframe [px]
   double min_shared_ratio = 0.5;  ///< of the frame's tracks, seen in the last keyframe, too
   int min_shared = 20;            ///< tracks
+  int min_tracks = 10;            ///< a frame with fewer is kept for the time's sake only
   double max_interval = 2.0;      ///< since the last keyframe [s]
 };
 

@@ -20,9 +20,8 @@ using FrameId = std::int64_t;
 struct TrackObservation {
   FrameId frame = 0;
   BearingMeasurement measured;
-  Eigen::Vector3d bearing_velocity = Eigen::Vector3d::Zero();  ///< [1/s]
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();             ///< [px]
-  double angular_resolution = 0.0;                             ///< [rad/px]
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< [px]
+  double angular_resolution = 0.0;                  ///< [rad/px]
 };
 
 /// A feature track in the window and, once it has depth, the landmark behind it. The oldest

@@ -13,27 +13,33 @@ namespace vins {
 /// depth.
 constexpr double kLandmarkDamping = 1e-6;
 
-/// An observation, linearized: residual = J_host d_host + J_target d_target + J_landmark d_l + r,
-/// weighted; d are error states of poses about their present values.
+/// An observation, linearized: residual = J_host d_host + J_target d_target + J_landmark d_l +
+/// J_rig d_rig + r, weighted; d are error states about the present values.
 struct LinearizedObservation {
-  std::size_t target = 0;  ///< index in the window of the frame that observes
+  std::size_t target = 0;  ///< index of the view that observes
   Eigen::Matrix<double, 2, 6> J_host;
   Eigen::Matrix<double, 2, 6> J_target;
   Eigen::Matrix<double, 2, 3> J_landmark;
+  Eigen::Matrix<double, 2, 7> J_rig;  ///< zero where the rig is not refined
   Eigen::Vector2d r;
 };
 
-/// The window's views: at present, and where Jacobians are taken.
+/// The window's views, at present and where Jacobians are taken: the frames', then the old
+/// keyframe's if there is one. A frame that was timed with another td than the present one shows
+/// the world from where the body was when the camera saw it: its pose, carried over the difference
+/// by its velocity and turn rate. (The feature tracks' own velocities would do as T. Qin and S. Shen
+/// have it, "Online temporal calibration for monocular visual-inertial systems", IROS 2018; but
+/// they share their noise with the residuals, which biases td by a millisecond.)
 struct WindowGeometry {
   std::vector<ViewGeometry> present;
   std::vector<ViewGeometry> linearization;
+  /// Change of a view's pose with td: position [m/s], rotation [rad/s, on the right].
+  std::vector<Eigen::Matrix<double, 6, 1>> td_rates;
+  bool refines_rig = false;  ///< Jacobians by the rig are wanted
 };
-/// `states`: present values of the frames' states.
-WindowGeometry geometryOf(const SlidingWindow& window, const std::vector<NavState>& states);
-/// At the values that the window has.
-WindowGeometry geometryOf(const SlidingWindow& window);
+WindowGeometry geometryOf(const SlidingWindow& window, const WindowValues& values);
 
-/// Observation of a landmark of frame `host` by frame `target`; where both are the same it is the
+/// Observation of a landmark of frame `host` by view `target`; where both are the same it is the
 /// host's own measurement, which knows no pose.
 LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
                                            const LandmarkAnchor& anchor,

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,6 +13,7 @@
 #include "vins_estimator/factors/prior_factor.h"
 #include "vins_estimator/inertial/nav_state.h"
 #include "vins_estimator/inertial/preintegration.h"
+#include "vins_estimator/inertial/rig_calibration.h"
 #include "vins_estimator/visual/landmarks.h"
 
 namespace vins {
@@ -23,7 +26,29 @@ struct WindowFrame {
   Preintegration imu;                        ///< from the frame before it in the window
   std::int64_t keyframe_id = -1;             ///< not negative where it has become a keyframe
   bool stands_still = false;                 ///< images and IMU say so
+  double td = 0.0;                           ///< with which it was timed [s]
+  Eigen::Vector3d measured_rate = Eigen::Vector3d::Zero();  ///< of the gyroscope, then [rad/s]
   Matrix15d covariance = Matrix15d::Zero();  ///< of its state when it was the newest
+};
+
+/// A keyframe of long ago that sees what the window sees: a loop. Where it stands in the odometry's
+/// world is unknown but for roll and pitch, since the odometry has drifted: with its pose as one
+/// more unknown the loop tells the window about the landmarks and the pose graph about the drift,
+/// but makes no jump.
+struct OldKeyframe {
+  std::int64_t keyframe_id = 0;
+  std::int64_t query_id = 0;  ///< the window's keyframe that found it
+  Pose T_wb;                  ///< in the odometry's world; its camera stands in it as rig.T_bc
+  Pose T_body_old;            ///< from its own body frame to the one of T_wb: the rig's may differ
+  Eigen::Vector3d up_b = Eigen::Vector3d::UnitZ();  ///< the vertical in T_wb's body frame, known
+  std::map<std::int64_t, BearingMeasurement> measured;  ///< by the track's id
+};
+
+/// Values of a window's unknowns, but for the landmarks'.
+struct WindowValues {
+  std::vector<NavState> states;  ///< of the frames
+  std::vector<Pose> old;         ///< T_wb of old keyframes: none or one
+  RigCalibration rig;
 };
 
 /// All that the adjustment is about: frames, oldest first, their landmarks, and the prior that is
@@ -32,10 +57,16 @@ struct SlidingWindow {
   std::vector<WindowFrame> frames;
   Landmarks landmarks{1.0};
   Prior prior;  ///< its parts name frames by their index here
-  Pose T_bc;
+  RigCalibration rig;
+  bool refines_rig = false;  ///< the rig is one of the unknowns; its prior says how far
+  Matrix7d rig_covariance = Matrix7d::Identity();  ///< of its errors, as last known
+  std::optional<OldKeyframe> loop;
   Eigen::Vector3d g_w = Eigen::Vector3d(0.0, 0.0, -9.81);
   double still_velocity = 0.01;  ///< deviation of the velocity of frames that stand still [m/s]
+  double old_tilt = 0.005;       ///< deviation of an old keyframe's roll and pitch [rad]
 
+  /// The present ones.
+  WindowValues values() const;
   /// Index of a frame; it must be there.
   std::size_t indexOf(FrameId id) const;
   /// T_wc of every frame.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "vins_estimator/window/sliding_window.h"
 
 namespace vins {
@@ -12,6 +14,12 @@ struct WindowSolverOptions {
   double huber = 1.5;  ///< where bearings' loss turns from square to linear [deviations]
 };
 
+/// Where the query keyframe of a loop stands, in the body frame of the old keyframe.
+struct LoopEstimate {
+  Pose T_old_query;
+  Eigen::Matrix<double, 6, 6> covariance;  ///< position [m], rotation [rad, on the right]
+};
+
 /// How a solution went.
 struct SolveSummary {
   bool usable = false;  ///< false: nothing has been changed
@@ -22,6 +30,8 @@ struct SolveSummary {
   double cost_initial = 0.0;
   double cost_final = 0.0;
   Matrix15d newest_covariance = Matrix15d::Zero();  ///< of the newest state, at the solution
+  Matrix7d rig_covariance = Matrix7d::Zero();       ///< of the rig's errors; zero: not refined
+  std::optional<LoopEstimate> loop;                 ///< of the window's loop
 };
 
 /// Moves the states and landmarks of the window to the least cost of prior, IMU and bearings

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -10,16 +11,18 @@
 
 namespace vins {
 
-/// The window's least-squares problem with all but the poses eliminated by hand: landmarks by the
-/// Schur complement of their 3x3 blocks, velocities and biases by a Cholesky factorization in which
-/// they stand first. What is left are six numbers a frame.
+/// The window's least-squares problem with all but the poses (and the rig's calibration) eliminated
+/// by hand: landmarks by the Schur complement of their 3x3 blocks, velocities and biases by a
+/// Cholesky factorization in which they stand first. What is left ("steps") are six numbers for
+/// each view - the frames, then the old keyframe if there is one - and seven for the rig where it
+/// is refined.
 ///
 /// The window must outlive it and must not change meanwhile.
 class WindowSystem {
  public:
   /// Values of all unknowns.
   struct Point {
-    std::vector<NavState> states;               ///< of the window's frames
+    WindowValues values;
     std::vector<LandmarkParameters> landmarks;  ///< of those with depth, by rising id
   };
 
@@ -31,6 +34,9 @@ class WindowSystem {
   void writeTo(const Point& point, SlidingWindow* window) const;
 
   std::size_t frameCount() const { return window_.frames.size(); }
+  std::size_t viewCount() const { return frameCount() + (window_.loop ? 1 : 0); }
+  bool refinesRig() const { return window_.refines_rig; }
+  Eigen::Index stepCount() const;
   std::size_t landmarkCount() const { return landmarks_.size(); }
   std::size_t observationCount() const { return observations_.size(); }
 
@@ -42,22 +48,26 @@ class WindowSystem {
 
   // Of the last linearization:
 
-  /// Upper triangular R with R^T R = information of the poses, all else eliminated.
+  /// Upper triangular R with R^T R = information of the steps, all else eliminated.
   Eigen::MatrixXd sqrtInformation() const;
-  /// y with R^T y = gradient by the poses, all else eliminated.
+  /// y with R^T y = gradient by the steps, all else eliminated.
   Eigen::VectorXd sqrtGradient() const;
-  /// The point moved: poses by six numbers for each frame, all else to the best of the linear
-  /// model for that.
-  Point moved(const Eigen::VectorXd& pose_steps) const;
+  /// The point moved by the steps, all else to the best of the linear model for that.
+  Point moved(const Eigen::VectorXd& steps) const;
   /// Covariance of the newest state.
   Matrix15d newestCovariance() const;
+  /// Covariance of the rig's errors; zero where it is not refined.
+  Matrix7d rigCovariance() const;
+  /// Covariance of the pose of view `b` in the body frame of view `a`: position, rotation (right).
+  Eigen::Matrix<double, 6, 6> relativeCovariance(std::size_t a, std::size_t b) const;
   /// Information of all states, landmarks eliminated: 15 rows for each frame, by ErrorState.
   Eigen::MatrixXd information() const;
 
  private:
   using Matrix63d = Eigen::Matrix<double, 6, 3>;
+  using Matrix73d = Eigen::Matrix<double, 7, 3>;
   struct FlatObservation {
-    const TrackObservation* observation;
+    const BearingMeasurement* measured;
     std::size_t target;
   };
   struct FlatLandmark {
@@ -70,19 +80,31 @@ class WindowSystem {
   struct Elimination {
     Eigen::Matrix3d H_inverse;
     Eigen::Vector3d g;
+    Matrix73d W_rig;  ///< set where the rig is refined
   };
 
-  Eigen::Index poseColumn(std::size_t frame) const;
+  void collectObservations(const std::map<FrameId, std::size_t>& index, const Landmark& landmark);
+  Eigen::Index poseColumn(std::size_t view) const;
+  Eigen::Index rigColumn() const { return poseColumn(viewCount()); }
+  Eigen::Index size() const { return rigColumn() + (refinesRig() ? 7 : 0); }
   static Eigen::Index motionColumn(std::size_t frame);
   Eigen::Index column(const Prior::Part& part) const;
   void preparePrior();
   void addLandmark(std::size_t landmark);
+  void addObservation(const LinearizedObservation& o, std::size_t host);
+  void addRig(const LinearizedObservation& o, std::size_t host, Elimination* elimination);
   void eliminate(std::size_t landmark);
+  void eliminateFromRig(const FlatLandmark& landmark, const Elimination& elimination);
   void addImu(std::size_t frame);
   void addStillness(std::size_t frame);
+  void addOldTilt();
   void addPrior();
   Eigen::VectorXd priorResidual(const Point& point) const;
   double bearingCost(const Point& point) const;
+  Eigen::VectorXd motionSteps(const Eigen::VectorXd& steps) const;
+  void moveLandmarks(const Eigen::VectorXd& steps,
+                     std::vector<LandmarkParameters>* landmarks) const;
+  const Pose& poseOf(std::size_t view) const;
 
   const SlidingWindow& window_;
   double huber_;
@@ -95,7 +117,7 @@ class WindowSystem {
   Eigen::MatrixXd H_;        ///< lower triangle: motions first, then poses
   Eigen::VectorXd g_;
   std::vector<Matrix63d, Eigen::aligned_allocator<Matrix63d>> W_;  ///< for each observation
-  std::vector<Elimination> eliminations_;
+  std::vector<Elimination, Eigen::aligned_allocator<Elimination>> eliminations_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::VectorXd y_;  ///< L^-1 g
 };

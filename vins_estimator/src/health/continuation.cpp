@@ -1,0 +1,89 @@
+#include "vins_estimator/health/continuation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vins_core/so3.h"
+#include "vins_estimator/inertial/preintegration.h"
+
+namespace vins {
+namespace {
+
+constexpr double kLongestCarry = 1.0;    // [s]: then accelerations can no longer be trusted
+constexpr double kUnknownSpeed = 1.0;    // [m/s], of a body that was lost
+constexpr double kUnknownTurn = 0.02;    // [rad/s], of a gyroscope that was silent or is in doubt
+constexpr double kLongestMemory = 10.0;  // [s]; first frames are younger
+
+/// The turn about the vertical that takes `from` nearest to `to`.
+Eigen::Quaterniond yawBetween(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
+  const Eigen::Quaterniond turn = to * from.conjugate();
+  const double yaw = 2.0 * std::atan2(turn.z(), turn.w());
+  return so3::exp(yaw * Eigen::Vector3d::UnitZ());
+}
+
+NavState moved(const Eigen::Quaterniond& turn, const Eigen::Vector3d& shift,
+               const NavState& state) {
+  NavState result = state;
+  result.T_wb.rotation = (turn * state.T_wb.rotation).normalized();
+  result.T_wb.position = turn * state.T_wb.position + shift;
+  result.v_w = turn * state.v_w;
+  return result;
+}
+
+}  // namespace
+
+void Continuation::start(Stamp stamp, const NavState& state, const Matrix15d& covariance) {
+  const Eigen::Matrix3d R_wb = state.T_wb.rotation.toRotationMatrix();
+  const Eigen::Vector3d position = covariance.diagonal().head<3>();
+  const Eigen::Matrix3d rotation_w =
+      R_wb * covariance.block<3, 3>(kRotation, kRotation) * R_wb.transpose();
+  entries_ = {{stamp, state, std::sqrt(position.maxCoeff()), std::sqrt(rotation_w(2, 2))}};
+  carried_ = 0.0;
+}
+
+void Continuation::addFrame(const FrameMeasurements& measurements) {
+  if (!isActive() || measurements.imu.size() < 2) return;
+  Entry entry = entries_.back();
+  const double dt = toSeconds(measurements.frame.stamp - entry.stamp);
+  if (dt <= 0.0) return;
+  Preintegration imu(noise_, entry.state.accelerometer_bias, entry.state.gyroscope_bias);
+  imu.integrate(measurements.imu);
+  NavState next = imu.predict(entry.state, {0.0, 0.0, -noise_.gravity});
+  carried_ += dt;
+  if (carried_ > kLongestCarry || measurements.has_gap) {
+    next.T_wb.position = entry.state.T_wb.position;
+    next.v_w.setZero();
+  }
+  entry.position_sigma += dt * kUnknownSpeed;
+  entry.yaw_sigma += dt * kUnknownTurn;
+  entry.stamp = measurements.frame.stamp;
+  entry.state = next;
+  entries_.push_back(entry);
+  while (toSeconds(entries_.back().stamp - entries_.front().stamp) > kLongestMemory) {
+    entries_.pop_front();
+  }
+}
+
+/// The entry nearest in time.
+const Continuation::Entry& Continuation::at(Stamp stamp) const {
+  return *std::min_element(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
+    return std::abs(a.stamp - stamp) < std::abs(b.stamp - stamp);
+  });
+}
+
+void Continuation::apply(Initialization* initialization) const {
+  if (!isActive() || initialization->frames.empty()) return;
+  const NavState first = initialization->frames.front().state;
+  const Entry& last = at(initialization->frames.front().features.stamp);
+  const Eigen::Quaterniond turn =
+      yawBetween(first.T_wb.rotation, last.state.T_wb.rotation);
+  const Eigen::Vector3d shift = last.state.T_wb.position - turn * first.T_wb.position;
+  for (InitialFrame& frame : initialization->frames) frame.state = moved(turn, shift, frame.state);
+  initialization->mean = moved(turn, shift, initialization->mean);
+  auto& sigma = initialization->sigma;
+  sigma.segment<3>(kPosition).setConstant(
+      std::hypot(sigma(kPosition), last.position_sigma));
+  sigma(kRotation + 2) = std::hypot(sigma(kRotation + 2), last.yaw_sigma);
+}
+
+}  // namespace vins

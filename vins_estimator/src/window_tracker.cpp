@@ -1,0 +1,207 @@
+#include "window_tracker.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "vins_estimator/visual/keyframe_choice.h"
+#include "vins_estimator/window/loop_closing.h"
+#include "vins_estimator/window/marginalization.h"
+#include "vins_estimator/window/motion_only.h"
+#include "vins_estimator/window/outlier_gate.h"
+#include "vins_estimator/window/window_start.h"
+
+namespace vins {
+namespace {
+
+/// Seconds that a piece of work takes, for the statistics.
+class StopWatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// What is known of the rig before anything is seen.
+Matrix7d rigCovariance(const EstimatorOptions& options) {
+  constexpr double kExact = 1e-9;
+  Vector7d sigma = Vector7d::Constant(kExact);
+  if (options.extrinsic != ExtrinsicMode::kTrusted) {
+    sigma.head<3>().setConstant(options.extrinsic_translation_sigma);
+    sigma.segment<3>(3).setConstant(options.extrinsic_rotation_sigma);
+  }
+  if (options.estimate_td) sigma(6) = options.td_sigma;
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
+}  // namespace
+
+WindowTracker::WindowTracker(const EstimatorOptions& options) : options_(options) {
+  forgetRig();
+  clear();
+}
+
+void WindowTracker::clear() {
+  SlidingWindow fresh;
+  fresh.landmarks = Landmarks(options_.pixel_noise);
+  fresh.g_w = Eigen::Vector3d(0.0, 0.0, -options_.imu.gravity);
+  fresh.rig = window_.rig;
+  fresh.rig_covariance = window_.rig_covariance;
+  fresh.refines_rig = window_.refines_rig;
+  window_ = std::move(fresh);
+  loop_is_new_ = false;
+}
+
+void WindowTracker::forgetRig() {
+  window_.rig = {options_.T_bc, options_.td};
+  window_.refines_rig = options_.extrinsic != ExtrinsicMode::kTrusted || options_.estimate_td;
+  window_.rig_covariance = rigCovariance(options_);
+}
+
+void WindowTracker::setRig(const TurnCalibration& found) {
+  // Turns that overlap and features that they share make them agree better than they are right.
+  constexpr double kDoubt = 3.0;
+  constexpr double kUnknownTranslation = 0.2;  // [m], of a camera whose place nobody has measured
+  auto variance = window_.rig_covariance.diagonal();
+  if (options_.extrinsic != ExtrinsicMode::kTrusted) {
+    window_.rig.T_bc.rotation = found.R_bc;
+    variance.segment<3>(3).setConstant(std::pow(kDoubt * found.rotation_sigma, 2));
+  }
+  if (options_.extrinsic == ExtrinsicMode::kUnknown) {
+    window_.rig.T_bc.position.setZero();
+    variance.head<3>().setConstant(std::pow(kUnknownTranslation, 2));
+  }
+  if (options_.estimate_td) {
+    window_.rig.td = found.td;
+    variance(6) = std::pow(kDoubt * found.td_sigma, 2);
+  }
+}
+
+void WindowTracker::start(const Initialization& initialization) {
+  startWindow(initialization, next_frame_id_, &window_);
+  next_frame_id_ += static_cast<FrameId>(initialization.frames.size());
+  if (options_.first_estimates) return;
+  for (WindowFrame& frame : window_.frames) frame.state.ignoreFirstEstimates();
+}
+
+void WindowTracker::addLoop(const LoopMatch& match) {
+  // Features that are found again by their looks are placed about twice as badly as tracked ones.
+  constexpr double kMatchNoise = 2.0;
+  if (vins::addLoop(match, kMatchNoise, &window_)) loop_is_new_ = true;
+}
+
+NavState WindowTracker::append(const FrameMeasurements& measurements, bool stands_still) {
+  const NavState& last = window_.frames.back().state.value();
+  Preintegration imu(options_.imu, last.accelerometer_bias, last.gyroscope_bias);
+  imu.integrate(measurements.imu);
+  const NavState predicted = imu.predict(last, window_.g_w);
+  WindowFrame frame{next_frame_id_++, measurements.frame.stamp, WindowState(predicted),
+                    std::move(imu)};
+  frame.stands_still = stands_still;
+  frame.td = window_.rig.td;
+  if (!measurements.imu.empty()) {
+    frame.measured_rate = measurements.imu.back().angular_velocity;
+  }
+  if (!options_.first_estimates) frame.state.ignoreFirstEstimates();
+  window_.landmarks.addFrame(frame.id, measurements.frame);
+  window_.frames.push_back(std::move(frame));
+  return predicted;
+}
+
+bool WindowTracker::adjust(bool motion_only, EstimatorResult* result) {
+  triangulateTracks(&window_);
+  const StopWatch watch;
+  WindowSolverOptions solver;
+  solver.max_num_iterations = options_.max_num_iterations;
+  solver.max_solver_time = options_.max_solver_time;
+  const std::size_t frames = window_.frames.size();
+  motion_only_ = motion_only && frames > 2 && !isKeyframeAt(frames - 2);
+  const SolveSummary summary =
+      motion_only_ ? solveNewestFrames(solver, &window_) : solveWindow(solver, &window_);
+  result->statistics.outliers = removeOutliers({}, &window_);
+  result->statistics.solve_seconds = watch.seconds();
+  reportSolution(summary, result);
+  if (!summary.usable) return false;
+  window_.frames.back().covariance = summary.newest_covariance;
+  if (window_.refines_rig) window_.rig_covariance = summary.rig_covariance;
+  reportLoop(summary, result);
+  return true;
+}
+
+void WindowTracker::reportSolution(const SolveSummary& summary, EstimatorResult* result) {
+  EstimatorStatistics& statistics = result->statistics;
+  statistics.landmarks = summary.landmarks;
+  statistics.observations = summary.observations;
+  statistics.iterations = summary.iterations;
+  statistics.cost_initial = summary.cost_initial;
+  statistics.cost_final = summary.cost_final;
+  statistics.motion_only = motion_only_;
+  if (!summary.timed_out) return;
+  result->events.push_back({result->stamp,
+                            Severity::kWarning,
+                            "solver_time",
+                            "max_solver_time has cut a solution short: the machine is too slow",
+                            {{"iterations", static_cast<double>(summary.iterations)}}});
+}
+
+/// Hands the loop's refined pose out, once, when it has been solved for the first time.
+void WindowTracker::reportLoop(const SolveSummary& summary, EstimatorResult* result) {
+  constexpr int kMinMatches = 15;
+  if (!loop_is_new_ || !summary.loop) return;
+  loop_is_new_ = false;
+  const std::optional<LoopEdge> edge = loopEdge(window_, *summary.loop, kMinMatches);
+  if (edge) {
+    result->loop_edges.push_back(*edge);
+  } else {
+    window_.loop.reset();
+  }
+}
+
+void WindowTracker::slide(std::uint32_t sequence, EstimatorResult* result) {
+  const std::size_t second = window_.frames.size() - 2;
+  const bool keep = second == 0 || (!motion_only_ && isKeyframeAt(second));
+  result->statistics.keyframe = keep;
+  if (!keep) {
+    dropFrame(&window_, second);
+    return;
+  }
+  makeKeyframe(second, sequence, result);
+  if (window_.frames.size() <= static_cast<std::size_t>(options_.window_size)) return;
+  const StopWatch watch;
+  result->left.push_back(poseUpdateOf(window_.frames.front(), sequence));
+  forgetLeavingLoop(&window_);
+  marginalizeOldest(WindowSolverOptions{}.huber, &window_);
+  result->statistics.marginalize_seconds = watch.seconds();
+}
+
+bool WindowTracker::isKeyframeAt(std::size_t index) const {
+  const WindowFrame& frame = window_.frames[index];
+  const WindowFrame& last = window_.frames[index - 1];
+  const Eigen::Quaterniond R_bc = window_.rig.T_bc.rotation;
+  const Eigen::Quaterniond R_frame_last = R_bc.conjugate() *
+                                          frame.state.value().T_wb.rotation.conjugate() *
+                                          last.state.value().T_wb.rotation * R_bc;
+  const FrameParallax parallax =
+      parallaxBetween(window_.landmarks, last.id, frame.id, R_frame_last);
+  KeyframeChoiceOptions choice;
+  choice.min_parallax = options_.keyframe_parallax;
+  choice.min_tracks = options_.min_tracks;
+  int tracks = 0;
+  for (const auto& [id, track] : window_.landmarks.tracks()) tracks += track.isSeenIn(frame.id);
+  return isKeyframe(choice, parallax, tracks, toSeconds(frame.stamp - last.stamp));
+}
+
+void WindowTracker::makeKeyframe(std::size_t index, std::uint32_t sequence,
+                                 EstimatorResult* result) {
+  window_.frames[index].keyframe_id = next_keyframe_id_++;
+  result->keyframes.push_back(keyframeOf(window_, index, sequence));
+}
+
+void WindowTracker::keepFirstFrames(std::uint32_t sequence, EstimatorResult* result) {
+  for (std::size_t i = 0; i + 1 < window_.frames.size(); ++i) makeKeyframe(i, sequence, result);
+}
+
+}  // namespace vins
