@@ -38,8 +38,8 @@ struct OdometryRun {
   std::vector<OdometrySample> samples;  ///< one for each odometry
   std::vector<double> frame_seconds;    ///< work of the estimator on each frame [s]
   std::vector<Event> events;
-  RigCalibration rig;        ///< as last estimated
-  RigCalibration true_rig;   ///< as simulated
+  RigCalibration rig;                          ///< as last estimated
+  RigCalibration true_rig;                     ///< as simulated
   Matrix7d rig_covariance = Matrix7d::Zero();  ///< zero where the rig was not estimated
 };
 

@@ -64,7 +64,8 @@ void addEstimatorOptions(po::options_description* options) {
   add("no-first-estimates", po::bool_switch(), "Jacobians at the current values throughout");
   add("assumed-td", withDefault(0.0), "td that the estimator is told [s]");
   add("estimate-td", po::bool_switch(), "that is a guess");
-  add("estimate-extrinsic", withDefault(0), "0: the camera's pose is known, 1: guessed, 2: unknown");
+  add("estimate-extrinsic", withDefault(0),
+      "0: the camera's pose is known, 1: guessed, 2: unknown");
   add("rotation-error", withDefault(0.0), "of the guess, about an oblique axis [degrees]");
   add("translation-error", withDefault(0.0), "of the guess [m]");
   add("motion-only", withDefault(0), "motion_only_ba: 0 never, 1 with all frames but keyframes");
@@ -102,15 +103,12 @@ sim::OdometryStudyOptions readOptions(const po::variables_map& values) {
   options.estimator.estimate_td = values["estimate-td"].as<bool>();
   options.estimator.extrinsic =
       static_cast<vins::ExtrinsicMode>(values["estimate-extrinsic"].as<int>());
-  options.estimator.motion_only =
-      static_cast<vins::MotionOnly>(values["motion-only"].as<int>());
+  options.estimator.motion_only = static_cast<vins::MotionOnly>(values["motion-only"].as<int>());
   const Eigen::Vector3d axis = Eigen::Vector3d(1.0, -1.0, 1.0).normalized();
   const double degree = M_PI / 180.0;
   options.estimator.T_bc.rotation =
-      options.T_bc.rotation *
-      vins::so3::exp(degree * values["rotation-error"].as<double>() * axis);
-  options.estimator.T_bc.position +=
-      values["translation-error"].as<double>() * axis;
+      options.T_bc.rotation * vins::so3::exp(degree * values["rotation-error"].as<double>() * axis);
+  options.estimator.T_bc.position += values["translation-error"].as<double>() * axis;
   options.validate();
   return options;
 }

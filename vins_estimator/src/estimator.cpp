@@ -159,15 +159,15 @@ class Estimator::Implementation {
         atFirstRow(measurements->frame, shutter, gyro, meanRate(measurements->imu) - bias);
   }
 
-  /// Watches the rig turn, where camera and IMU stand to each other in a way that is not quite known.
-  /// Returns whether enough is known of it to begin.
+  /// Watches the rig turn, where camera and IMU stand to each other in a way that is not quite
+  /// known. Returns whether enough is known of it to begin.
   bool calibrate(const FrameMeasurements& measurements, EstimatorResult* result) {
     const RigCalibration& rig = tracker_.window().rig;
     const std::optional<TurnCalibration> found = calibrator_.addFrame(measurements, rig.td);
     moveEvents(calibrator_.takeEvents(), result);
     if (!found) return extrinsic_is_known_;
-    const bool is_new = !extrinsic_is_known_ ||
-                        rig.T_bc.rotation.angularDistance(found->R_bc) > 2.0 * found->rotation_sigma;
+    const bool is_new = !extrinsic_is_known_ || rig.T_bc.rotation.angularDistance(found->R_bc) >
+                                                    2.0 * found->rotation_sigma;
     constexpr double kTimeShift = 1.5e-3;  // [s]: frames timed by less than that are well timed
     const bool is_shifted = std::abs(found->td - rig.td) > std::max(kTimeShift, found->td_sigma);
     if (!is_new && !is_shifted) return true;
@@ -176,12 +176,12 @@ class Estimator::Implementation {
     tracker_.setRig(*found);
     initializer_.setExtrinsic(rig.T_bc);
     if (!std::exchange(extrinsic_is_known_, true)) {
-      result->events.push_back({result->stamp,
-                                Severity::kInfo,
-                                "extrinsic_found",
-                                "the camera's rotation in the body frame is known",
-                                {{"turns", static_cast<double>(found->pairs)},
-                                 {"sigma_rad", found->rotation_sigma}}});
+      result->events.push_back(
+          {result->stamp,
+           Severity::kInfo,
+           "extrinsic_found",
+           "the camera's rotation in the body frame is known",
+           {{"turns", static_cast<double>(found->pairs)}, {"sigma_rad", found->rotation_sigma}}});
     }
     return true;
   }

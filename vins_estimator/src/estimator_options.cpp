@@ -221,8 +221,8 @@ EstimatorOptions readEstimatorOptions(const Parameters& parameters) {
     options.image_height = parameters.integer("image_height", kHeight);
   }
   options.motion_only = readMotionOnly(parameters);
-  options.extrinsic_rotation_sigma = parameters.numberOr(
-      "extrinsic_rotation_sigma", options.extrinsic_rotation_sigma, kSigma);
+  options.extrinsic_rotation_sigma =
+      parameters.numberOr("extrinsic_rotation_sigma", options.extrinsic_rotation_sigma, kSigma);
   options.extrinsic_translation_sigma = parameters.numberOr(
       "extrinsic_translation_sigma", options.extrinsic_translation_sigma, kSigma);
   options.td_sigma = parameters.numberOr("td_sigma", options.td_sigma, kSigma);

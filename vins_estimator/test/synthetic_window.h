@@ -40,7 +40,8 @@ SyntheticWindow makeWindow(int frames, int landmarks, double noise, VisibilityOf
   const ImuNoise imu_noise{2.0e-3, 1.7e-4, 3.0e-3, 1.9e-5, 9.81};
   SyntheticWindow result;
   SlidingWindow& window = result.window;
-  window.rig.T_bc = Pose(so3::exp(Eigen::Vector3d(0.1, -0.2, 0.05)), Eigen::Vector3d(0.05, 0.02, 0.1));
+  window.rig.T_bc =
+      Pose(so3::exp(Eigen::Vector3d(0.1, -0.2, 0.05)), Eigen::Vector3d(0.05, 0.02, 0.1));
 
   NavState state;
   state.T_wb = Pose(so3::exp(Eigen::Vector3d(0.1, -0.05, 0.4)), Eigen::Vector3d(1.0, 2.0, 3.0));
@@ -67,7 +68,8 @@ SyntheticWindow makeWindow(int frames, int landmarks, double noise, VisibilityOf
       features.observations.push_back(observe(k, state.T_wb * window.rig.T_bc,
                                               points[static_cast<std::size_t>(k)], noise, &random));
     }
-    start.frames.push_back({features, state, imu});
+    start.frames.push_back(
+        {features, state, imu, samples[static_cast<std::size_t>(40 * i)].angular_velocity});
     result.truth.push_back(state);
   }
   start.mean = result.truth.front();

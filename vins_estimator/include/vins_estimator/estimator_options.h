@@ -36,9 +36,9 @@ struct EstimatorOptions {
   bool first_estimates = true;      ///< first-estimates Jacobians; off only to study them
   ExtrinsicMode extrinsic = ExtrinsicMode::kTrusted;  ///< estimate_extrinsic
   bool estimate_td = false;                           ///< td is a first guess
-  double extrinsic_rotation_sigma = 0.05;     ///< of a guess of T_bc, per axis [rad]
-  double extrinsic_translation_sigma = 0.05;  ///< the same [m]
-  double td_sigma = 0.02;                     ///< of a guess of td [s]
+  double extrinsic_rotation_sigma = 0.05;             ///< of a guess of T_bc, per axis [rad]
+  double extrinsic_translation_sigma = 0.05;          ///< the same [m]
+  double td_sigma = 0.02;                             ///< of a guess of td [s]
   double rolling_shutter_readout = 0.0;  ///< of all rows (rolling_shutter_tr); 0: global [s]
   int image_height = 0;                  ///< needed with a rolling shutter [px]
   MotionOnly motion_only = MotionOnly::kWhenBehind;  ///< motion_only_ba

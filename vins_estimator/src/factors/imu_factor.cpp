@@ -106,7 +106,8 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals,
   const Matrix15d& weight = imu_.sqrtInformation();
   Eigen::Map<Vector15d>(residuals).noalias() = weight * imuResidual(imu_, g_w_, i, j);
   if (jacobians == nullptr) return true;
-  const ImuJacobians J = imuJacobians(imu_, g_w_, i_.linearizationPoint(i), j_.linearizationPoint(j));
+  const ImuJacobians J =
+      imuJacobians(imu_, g_w_, i_.linearizationPoint(i), j_.linearizationPoint(j));
   if (jacobians[0] != nullptr) writeJacobian<6>(weight, J.J_pose_i, jacobians[0]);
   if (jacobians[1] != nullptr) writeJacobian<9>(weight, J.J_motion_i, jacobians[1]);
   if (jacobians[2] != nullptr) writeJacobian<6>(weight, J.J_pose_j, jacobians[2]);

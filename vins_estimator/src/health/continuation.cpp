@@ -75,14 +75,12 @@ void Continuation::apply(Initialization* initialization) const {
   if (!isActive() || initialization->frames.empty()) return;
   const NavState first = initialization->frames.front().state;
   const Entry& last = at(initialization->frames.front().features.stamp);
-  const Eigen::Quaterniond turn =
-      yawBetween(first.T_wb.rotation, last.state.T_wb.rotation);
+  const Eigen::Quaterniond turn = yawBetween(first.T_wb.rotation, last.state.T_wb.rotation);
   const Eigen::Vector3d shift = last.state.T_wb.position - turn * first.T_wb.position;
   for (InitialFrame& frame : initialization->frames) frame.state = moved(turn, shift, frame.state);
   initialization->mean = moved(turn, shift, initialization->mean);
   auto& sigma = initialization->sigma;
-  sigma.segment<3>(kPosition).setConstant(
-      std::hypot(sigma(kPosition), last.position_sigma));
+  sigma.segment<3>(kPosition).setConstant(std::hypot(sigma(kPosition), last.position_sigma));
   sigma(kRotation + 2) = std::hypot(sigma(kRotation + 2), last.yaw_sigma);
 }
 

@@ -54,8 +54,8 @@ Matrix15d transition(const Midpoint& m) {
 
 /// Variances of a step's mean readings besides the sensor's noise: the motion between the two is
 /// not known. Motion of a deviation s at a frequency f, drawn as a straight line over dt, is missed
-/// by s (2 pi f dt)^2 / 8 until that reaches s itself. Next to nothing at the usual rates, it is what
-/// a gap in the samples costs.
+/// by s (2 pi f dt)^2 / 8 until that reaches s itself. Next to nothing at the usual rates, it is
+/// what a gap in the samples costs.
 double missedShare(double dt) {
   constexpr double kFrequency = 1.5;  // [Hz], of a vehicle's or a hand's motion
   const double phase = 2.0 * M_PI * kFrequency * dt;
@@ -72,8 +72,8 @@ Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise, const Matrix15d& F
   const double missed = missedShare(m.dt);
   const double acc = noise.accelerometer_noise * noise.accelerometer_noise / m.dt +
                      std::pow(missed * kUsualAcceleration, 2);
-  const double gyr = noise.gyroscope_noise * noise.gyroscope_noise / m.dt +
-                     std::pow(missed * kUsualTurnRate, 2);
+  const double gyr =
+      noise.gyroscope_noise * noise.gyroscope_noise / m.dt + std::pow(missed * kUsualTurnRate, 2);
   // An error of a reading acts as the opposite error of the bias does.
   const Eigen::Matrix<double, 9, 3> G_acc = F.block<9, 3>(0, kAccBias);
   const Eigen::Matrix<double, 9, 3> G_gyr = F.block<9, 3>(0, kGyrBias);

@@ -31,8 +31,8 @@ Vector3d disagreement(const TurnPair& pair, const TurnCalibration& at, Matrix37d
   J->leftCols<3>() = R * so3::hat(pair.camera);
   J->col(kTd) = pair.rate_change;
   J->rightCols<3>() = -pair.duration * Matrix3d::Identity();
-  return pair.body + (at.td - pair.td_used) * pair.rate_change -
-         pair.duration * at.gyroscope_bias - R * pair.camera;
+  return pair.body + (at.td - pair.td_used) * pair.rate_change - pair.duration * at.gyroscope_bias -
+         R * pair.camera;
 }
 
 /// Normal equations of all turns and of what was known before.
@@ -143,8 +143,7 @@ std::vector<BearingPair> TurnCalibrator::sharedWith(const FeatureFrame& frame) c
   for (const FeatureObservation& o : frame.observations) {
     const auto it = first.find(o.id);
     if (o.camera != 0 || it == first.end()) continue;
-    pairs.push_back(
-        {it->second->bearing, o.bearing, options_.pixel_noise * o.angular_resolution});
+    pairs.push_back({it->second->bearing, o.bearing, options_.pixel_noise * o.angular_resolution});
   }
   return pairs;
 }
@@ -152,8 +151,8 @@ std::vector<BearingPair> TurnCalibrator::sharedWith(const FeatureFrame& frame) c
 void TurnCalibrator::integrate(const std::vector<ImuSample>& samples) {
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double dt = toSeconds(samples[i].stamp - samples[i - 1].stamp);
-    turn_b_ = turn_b_ * so3::exp(0.5 * dt * (samples[i - 1].angular_velocity +
-                                             samples[i].angular_velocity));
+    turn_b_ = turn_b_ *
+              so3::exp(0.5 * dt * (samples[i - 1].angular_velocity + samples[i].angular_velocity));
     duration_ += dt;
   }
 }

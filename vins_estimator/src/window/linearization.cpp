@@ -52,8 +52,6 @@ Eigen::Vector2d observationResidual(const BearingMeasurement& measured,
                          landmark, nullptr);
 }
 
-
-
 LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
                                            const LandmarkAnchor& anchor,
                                            const WindowGeometry& geometry, std::size_t host,
@@ -77,8 +75,7 @@ LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
   if (geometry.refines_rig) {
     out.J_rig.leftCols<6>() = extrinsicJacobian(measured, anchor, geometry.linearization[host],
                                                 geometry.linearization[target], landmark);
-    out.J_rig.col(6) =
-        J.J_host * geometry.td_rates[host] + J.J_target * geometry.td_rates[target];
+    out.J_rig.col(6) = J.J_host * geometry.td_rates[host] + J.J_target * geometry.td_rates[target];
   }
   return out;
 }

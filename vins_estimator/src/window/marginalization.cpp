@@ -170,8 +170,7 @@ void shiftToFirstEstimates(const SlidingWindow& window, const Columns& columns, 
     }
   }
   if (columns.rig() >= 0) {
-    rows.rightCols<1>() -=
-        rows.middleCols<7>(columns.rig()) * minus(window.rig, rigZero(window));
+    rows.rightCols<1>() -= rows.middleCols<7>(columns.rig()) * minus(window.rig, rigZero(window));
   }
 }
 

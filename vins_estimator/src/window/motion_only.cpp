@@ -80,10 +80,10 @@ class NewestFrames {
     addPose(frame - 1);
     addPose(frame);
     const auto& frames = window_.frames;
-    problem_.AddResidualBlock(new ImuFactor(frames[frame].imu, window_.g_w, frames[frame - 1].state,
-                                            frames[frame].state),
-                              nullptr, poses_[frame - 1].data(), motions_[frame - 1].data(),
-                              poses_[frame].data(), motions_[frame].data());
+    problem_.AddResidualBlock(
+        new ImuFactor(frames[frame].imu, window_.g_w, frames[frame - 1].state, frames[frame].state),
+        nullptr, poses_[frame - 1].data(), motions_[frame - 1].data(), poses_[frame].data(),
+        motions_[frame].data());
   }
 
   /// What the frames that move see of a landmark of a frame that does not.

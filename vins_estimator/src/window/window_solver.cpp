@@ -26,9 +26,10 @@ std::vector<Pose> posesOf(const WindowValues& values, bool refines_rig) {
   return poses;
 }
 
-/// The whole window as one residual of the poses (and td, where the rig is refined), whose square is
-/// the cost and whose Jacobian is the square root of their information. Ceres asks for a trial step's cost first, and for
-/// Jacobians at the same poses if it takes the step: that is when the system is linearized anew.
+/// The whole window as one residual of the poses (and td, where the rig is refined), whose square
+/// is the cost and whose Jacobian is the square root of their information. Ceres asks for a trial
+/// step's cost first, and for Jacobians at the same poses if it takes the step: that is when the
+/// system is linearized anew.
 class ReducedWindowFactor : public ceres::CostFunction {
  public:
   explicit ReducedWindowFactor(WindowSystem* system)

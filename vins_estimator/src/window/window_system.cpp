@@ -117,7 +117,8 @@ VectorXd WindowSystem::priorResidual(const Point& point) const {
   VectorXd d(prior.columns());
   Index row = 0;
   for (const Prior::Part& part : prior.parts) {
-    d.segment(row, part.size()) = priorDifference(part, point.values.states[part.frame], point.values.rig);
+    d.segment(row, part.size()) =
+        priorDifference(part, point.values.states[part.frame], point.values.rig);
     row += part.size();
   }
   return prior.A * d + prior.b;
@@ -168,9 +169,9 @@ void WindowSystem::addLandmark(std::size_t index) {
   elimination.g.setZero();
   elimination.W_rig.setZero();
   for (std::size_t k = landmark.begin; k < landmark.end; ++k) {
-    LinearizedObservation o = linearizeObservation(
-        *observations_[k].measured, landmark.landmark->anchor, geometry_, landmark.host,
-        observations_[k].target, at_.landmarks[index]);
+    LinearizedObservation o =
+        linearizeObservation(*observations_[k].measured, landmark.landmark->anchor, geometry_,
+                             landmark.host, observations_[k].target, at_.landmarks[index]);
     scaleByLoss(huber_, &o);
     H_ll += o.J_landmark.transpose() * o.J_landmark;
     elimination.g += o.J_landmark.transpose() * o.r;
@@ -288,9 +289,7 @@ MatrixXd WindowSystem::sqrtInformation() const {
   return MatrixXd(L.triangularView<Eigen::Lower>()).transpose();
 }
 
-VectorXd WindowSystem::sqrtGradient() const {
-  return y_.tail(stepCount());
-}
+VectorXd WindowSystem::sqrtGradient() const { return y_.tail(stepCount()); }
 
 VectorXd WindowSystem::motionSteps(const VectorXd& steps) const {
   const auto motions = static_cast<Index>(9 * frameCount());

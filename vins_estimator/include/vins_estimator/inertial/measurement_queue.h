@@ -56,8 +56,8 @@ class MeasurementQueue {
   void addImu(const ImuSample& sample);
   void addFrame(const FeatureFrame& frame);
 
-  /// The oldest frame whose samples have all come, up to `readout` [s] after it. `td` [s] may change
-  /// a little from call to call: an interval begins where the one before has ended.
+  /// The oldest frame whose samples have all come, up to `readout` [s] after it. `td` [s] may
+  /// change a little from call to call: an interval begins where the one before has ended.
   std::optional<FrameMeasurements> next(double td, double readout = 0.0);
 
   /// What has happened since the last call.

@@ -28,7 +28,7 @@ struct TurnPair {
 /// gyroscope's bias.
 struct TurnCalibration {
   Eigen::Quaterniond R_bc = Eigen::Quaterniond::Identity();
-  double td = 0.0;                                          ///< t_imu = t_cam + td [s]
+  double td = 0.0;                                           ///< t_imu = t_cam + td [s]
   Eigen::Vector3d gyroscope_bias = Eigen::Vector3d::Zero();  ///< [rad/s]
   double rotation_sigma = 0.0;  ///< of R_bc, about the axis that is known least [rad]
   double td_sigma = 0.0;        ///< [s]
@@ -69,9 +69,9 @@ struct TurnCalibratorOptions {
 
 /// Finds how the camera is turned against the IMU, and how their clocks differ, by watching both
 /// turn ("hand-eye"; Z. Yang, S. Shen, "Monocular visual-inertial state estimation with online
-/// initialization and camera-IMU extrinsic calibration", T-ASE 2017): before anything else is known.
-/// Where R_bc is unknown it needs turns about two axes, and tells by the event `extrinsic_waiting`
-/// how much is missing.
+/// initialization and camera-IMU extrinsic calibration", T-ASE 2017): before anything else is
+/// known. Where R_bc is unknown it needs turns about two axes, and tells by the event
+/// `extrinsic_waiting` how much is missing.
 class TurnCalibrator {
  public:
   /// `guess`: R_bc and td as configured.

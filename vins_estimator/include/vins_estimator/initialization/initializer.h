@@ -25,16 +25,16 @@ namespace vins {
 /// Options of Initializer.
 struct InitializerOptions {
   ImuNoise imu;
-  Pose T_bc;                      ///< camera in the body frame
-  double pixel_noise = 1.0;       ///< deviation of a tracked corner, per axis [px]
-  int max_frames = 11;            ///< that an Initialization has, at least 5
-  double max_span = 5.0;          ///< of the frames chosen for a moving start [s]
-  double min_span = 0.8;          ///< the same [s]
-  int attempt_interval = 4;       ///< frames between attempts at a moving start
-  double report_interval = 1.0;   ///< between events that tell why it waits [s]
-  double max_gap = 0.05;          ///< between IMU samples; after a longer one it begins anew [s]
-  std::uint64_t seed = 1;         ///< of the random samples
-  StillnessOptions stillness;     ///< its gravity is imu.gravity, whatever it says
+  Pose T_bc;                     ///< camera in the body frame
+  double pixel_noise = 1.0;      ///< deviation of a tracked corner, per axis [px]
+  int max_frames = 11;           ///< that an Initialization has, at least 5
+  double max_span = 5.0;         ///< of the frames chosen for a moving start [s]
+  double min_span = 0.8;         ///< the same [s]
+  int attempt_interval = 4;      ///< frames between attempts at a moving start
+  double report_interval = 1.0;  ///< between events that tell why it waits [s]
+  double max_gap = 0.05;         ///< between IMU samples; after a longer one it begins anew [s]
+  std::uint64_t seed = 1;        ///< of the random samples
+  StillnessOptions stillness;    ///< its gravity is imu.gravity, whatever it says
   StaticInitializerOptions at_rest;
   VisualStructureOptions structure;
   AlignmentOptions alignment;

@@ -27,9 +27,9 @@ struct LinearizedObservation {
 /// The window's views, at present and where Jacobians are taken: the frames', then the old
 /// keyframe's if there is one. A frame that was timed with another td than the present one shows
 /// the world from where the body was when the camera saw it: its pose, carried over the difference
-/// by its velocity and turn rate. (The feature tracks' own velocities would do as T. Qin and S. Shen
-/// have it, "Online temporal calibration for monocular visual-inertial systems", IROS 2018; but
-/// they share their noise with the residuals, which biases td by a millisecond.)
+/// by its velocity and turn rate. (The feature tracks' own velocities would do as T. Qin and S.
+/// Shen have it, "Online temporal calibration for monocular visual-inertial systems", IROS 2018;
+/// but they share their noise with the residuals, which biases td by a millisecond.)
 struct WindowGeometry {
   std::vector<ViewGeometry> present;
   std::vector<ViewGeometry> linearization;

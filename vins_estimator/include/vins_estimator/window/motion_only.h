@@ -5,8 +5,8 @@
 namespace vins {
 
 /// Motion-only visual-inertial bundle adjustment: moves the frames after the newest keyframe only,
-/// with all else as it stands - keyframes, landmarks, calibration (VINS-Mono, section VI-E). Costs a
-/// tenth of solveWindow(). The covariance of the newest state, which no longer knows the window's
+/// with all else as it stands - keyframes, landmarks, calibration (VINS-Mono, section VI-E). Costs
+/// a tenth of solveWindow(). The covariance of the newest state, which no longer knows the window's
 /// information, is the last keyframe's, carried on by the IMU: too large rather than too small.
 SolveSummary solveNewestFrames(const WindowSolverOptions& options, SlidingWindow* window);
 

@@ -23,12 +23,12 @@ struct WindowFrame {
   FrameId id = 0;
   Stamp stamp = 0;  ///< the image's [ns]
   WindowState state;
-  Preintegration imu;                        ///< from the frame before it in the window
-  std::int64_t keyframe_id = -1;             ///< not negative where it has become a keyframe
-  bool stands_still = false;                 ///< images and IMU say so
-  double td = 0.0;                           ///< with which it was timed [s]
+  Preintegration imu;             ///< from the frame before it in the window
+  std::int64_t keyframe_id = -1;  ///< not negative where it has become a keyframe
+  bool stands_still = false;      ///< images and IMU say so
+  double td = 0.0;                ///< with which it was timed [s]
   Eigen::Vector3d measured_rate = Eigen::Vector3d::Zero();  ///< of the gyroscope, then [rad/s]
-  Matrix15d covariance = Matrix15d::Zero();  ///< of its state when it was the newest
+  Matrix15d covariance = Matrix15d::Zero();                 ///< of its state when it was the newest
 };
 
 /// A keyframe of long ago that sees what the window sees: a loop. Where it stands in the odometry's
