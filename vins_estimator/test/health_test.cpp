@@ -78,13 +78,14 @@ TEST(TrackWatch, TellsLossAndReturnOnce) {
 /// First states of a flight in a world of their own, as an initialization makes them.
 Initialization initializationOf(const SyntheticFlight& flight, double begin, double duration) {
   const Pose T_nw(so3::exp(-1.2 * Vector3d::UnitZ()), Vector3d(-5.0, 2.0, -1.0));
+  const Preintegration nothing({}, Vector3d::Zero(), Vector3d::Zero());
   Initialization result;
   for (const FrameMeasurements& m : flight.record(begin, duration)) {
     const double t = toSeconds(m.frame.stamp);
     NavState state;
     state.T_wb = T_nw * flight.motion(t);
     state.v_w = T_nw.rotation * flight.velocity(t);
-    result.frames.push_back({m.frame, state, Preintegration({}, {}, {}), {}});
+    result.frames.push_back({m.frame, state, nothing, Vector3d::Zero()});
   }
   result.mean = result.frames.front().state;
   result.sigma.setConstant(1e-3);

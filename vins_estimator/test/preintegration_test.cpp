@@ -179,5 +179,23 @@ TEST(Preintegration, CovarianceIsThatOfAThousandNoisyRuns) {
   }
 }
 
+TEST(Preintegration, AGapIsUncertainButCanBeWeighted) {
+  const ImuNoise noise{2.0e-3, 1.7e-4, 3.0e-3, 1.9e-5, 9.81};
+  const auto samples = testing::wavingSamples(0.2, 200.0);
+  Preintegration whole(noise, Vector3d::Zero(), Vector3d::Zero());
+  whole.integrate(samples);
+  Preintegration gap(noise, Vector3d::Zero(), Vector3d::Zero());
+  gap.integrate({samples.front(), samples.back()});
+  EXPECT_TRUE(gap.sqrtInformation().allFinite());
+  const auto sigma = [](const Preintegration& imu, int row) {
+    return std::sqrt(imu.covariance()(row, row));
+  };
+  // What was missed lies within the deviations that say so, which are far above the usual ones.
+  const Vector3d missed = gap.beta() - whole.beta();
+  EXPECT_LT(missed.norm(), 3.0 * sigma(gap, kVelocity));
+  EXPECT_GT(sigma(gap, kVelocity), 20.0 * sigma(whole, kVelocity));
+  EXPECT_GT(sigma(gap, kRotation), 20.0 * sigma(whole, kRotation));
+}
+
 }  // namespace
 }  // namespace vins

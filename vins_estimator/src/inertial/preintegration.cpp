@@ -52,28 +52,37 @@ Matrix15d transition(const Midpoint& m) {
   return F;
 }
 
-/// Variances of a step's mean readings besides the sensor's noise: the motion between the two is
-/// not known. Motion of a deviation s at a frequency f, drawn as a straight line over dt, is missed
-/// by s (2 pi f dt)^2 / 8 until that reaches s itself. Next to nothing at the usual rates, it is
-/// what a gap in the samples costs.
-double missedShare(double dt) {
-  constexpr double kFrequency = 1.5;  // [Hz], of a vehicle's or a hand's motion
+/// Motion of a deviation s at a frequency f, drawn as a straight line over dt, is missed by
+/// s (2 pi f dt)^2 / 8 until that reaches s itself: next to nothing at the usual rates, it is what a
+/// gap in the samples costs. One error for the whole of dt is written as independent ones of its
+/// steps.
+Preintegration::MissedMotion missedMotion(double dt, int steps) {
+  constexpr double kFrequency = 1.5;     // [Hz], of a vehicle's or a hand's motion
+  constexpr double kAcceleration = 2.0;  // deviation [m/s^2]
+  constexpr double kTurnRate = 0.5;      // deviation [rad/s]
   const double phase = 2.0 * M_PI * kFrequency * dt;
-  return std::min(1.0, phase * phase / 8.0);
+  const double share = std::min(1.0, phase * phase / 8.0);
+  return {steps * std::pow(share * kAcceleration, 2), steps * std::pow(share * kTurnRate, 2)};
 }
-constexpr double kUsualAcceleration = 2.0;  // deviation [m/s^2]
-constexpr double kUsualTurnRate = 0.5;      // deviation [rad/s]
+
+/// A reading on the straight line between two.
+ImuSample between(const ImuSample& from, const ImuSample& to, double share) {
+  ImuSample sample;
+  sample.stamp = from.stamp + toNanoseconds(share * toSeconds(to.stamp - from.stamp));
+  sample.acceleration = (1.0 - share) * from.acceleration + share * to.acceleration;
+  sample.angular_velocity = (1.0 - share) * from.angular_velocity + share * to.angular_velocity;
+  return sample;
+}
 
 /// What the noise of one step adds. White noise of density s acts as one error of variance
 /// s^2 / dt, constant over the step: the sum over many steps then has the variance s^2 t that the
 /// density says. (Two half-errors, one a reading, would be counted as independent in neighbouring
 /// steps, which share a reading, and halve it.)
-Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise, const Matrix15d& F) {
-  const double missed = missedShare(m.dt);
-  const double acc = noise.accelerometer_noise * noise.accelerometer_noise / m.dt +
-                     std::pow(missed * kUsualAcceleration, 2);
-  const double gyr =
-      noise.gyroscope_noise * noise.gyroscope_noise / m.dt + std::pow(missed * kUsualTurnRate, 2);
+Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise,
+                    const Preintegration::MissedMotion& missed, const Matrix15d& F) {
+  const double acc =
+      noise.accelerometer_noise * noise.accelerometer_noise / m.dt + missed.acceleration;
+  const double gyr = noise.gyroscope_noise * noise.gyroscope_noise / m.dt + missed.turn_rate;
   // An error of a reading acts as the opposite error of the bias does.
   const Eigen::Matrix<double, 9, 3> G_acc = F.block<9, 3>(0, kAccBias);
   const Eigen::Matrix<double, 9, 3> G_gyr = F.block<9, 3>(0, kGyrBias);
@@ -143,13 +152,28 @@ void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
 
 void Preintegration::integratePiece(const std::vector<ImuSample>& samples) {
   const ImuNoise noise = noiseOf(noise_, samples);
-  for (std::size_t i = 1; i < samples.size(); ++i) step(samples[i - 1], samples[i], noise);
+  for (std::size_t i = 1; i < samples.size(); ++i) bridge(samples[i - 1], samples[i], noise);
   sqrt_information_known_ = false;
 }
 
-void Preintegration::step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
+void Preintegration::bridge(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
+  // In one long step the errors of alpha and beta would be the same, and their covariance singular.
+  constexpr double kLongestStep = 0.01;  // [s]
   const double dt = toSeconds(to.stamp - from.stamp);
   if (dt <= 0.0) return;
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - 1e-6)));
+  const MissedMotion missed = missedMotion(dt, steps);
+  ImuSample last = from;
+  for (int k = 1; k <= steps; ++k) {
+    const ImuSample next = k < steps ? between(from, to, static_cast<double>(k) / steps) : to;
+    step(last, next, noise, missed);
+    last = next;
+  }
+}
+
+void Preintegration::step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise,
+                          const MissedMotion& missed) {
+  const double dt = toSeconds(to.stamp - from.stamp);
   const Vector3d phi = dt * (0.5 * (from.angular_velocity + to.angular_velocity) - gyroscope_bias_);
   const Eigen::Quaterniond turn = so3::exp(phi);
   const Eigen::Quaterniond gamma = (gamma_ * turn).normalized();
@@ -167,7 +191,7 @@ void Preintegration::step(const ImuSample& from, const ImuSample& to, const ImuN
   duration_ += dt;
   const Matrix15d F = transition(m);
   jacobian_ = F * jacobian_;
-  covariance_ = F * covariance_ * F.transpose() + stepNoise(m, noise, F);
+  covariance_ = F * covariance_ * F.transpose() + stepNoise(m, noise, missed, F);
 }
 
 bool Preintegration::needsReintegration(const Vector3d& accelerometer_bias,

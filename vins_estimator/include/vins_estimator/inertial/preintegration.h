@@ -68,9 +68,18 @@ class Preintegration {
   /// The state at j of a body that stands at `state` at i. `g_w`: gravity, (0, 0, -g).
   NavState predict(const NavState& state, const Eigen::Vector3d& g_w) const;
 
+  /// Variances of a step's mean readings, besides the sensor's noise: the motion between two samples
+  /// is not known.
+  struct MissedMotion {
+    double acceleration = 0.0;  ///< [m^2/s^4]
+    double turn_rate = 0.0;     ///< [rad^2/s^2]
+  };
+
  private:
   void integratePiece(const std::vector<ImuSample>& samples);
-  void step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise);
+  void bridge(const ImuSample& from, const ImuSample& to, const ImuNoise& noise);
+  void step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise,
+            const MissedMotion& missed);
 
   ImuNoise noise_;
   Eigen::Vector3d accelerometer_bias_;
