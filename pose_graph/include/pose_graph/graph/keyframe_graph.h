@@ -1,0 +1,159 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "vins_core/loop_match.h"
+#include "vins_core/pose.h"
+#include "vins_core/time.h"
+
+namespace vins {
+
+/// A keyframe's place in the graph.
+struct KeyframeVertex {
+  std::int64_t id = 0;
+  std::uint32_t sequence = 0;  ///< run of the odometry that it belongs to
+  Stamp stamp = 0;             ///< [ns]
+  Pose T_wb;                   ///< body in its own sequence's odometry world
+  Pose T_mb;                   ///< body in the map; roll and pitch are those of T_wb
+};
+
+/// Relative pose of two keyframes in four degrees of freedom. Each keyframe carries a heading
+/// frame: at its body, with the axes of its odometry's world, so z is up; in the map it has turned
+/// by the yaw between T_wb and T_mb. An edge says where the heading frame of `to` stands in that
+/// of `from`. (VINS-Mono's edges, up to the choice of the heading frame: a body's own yaw is
+/// undefined when its x axis is vertical, as it often is in EuRoC.)
+struct HeadingEdge {
+  std::int64_t from = 0;  ///< the older keyframe
+  std::int64_t to = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  double yaw = 0.0;                                    ///< [rad]
+  double position_sigma = 1.0;                         ///< standard deviation of each axis [m]
+  double yaw_sigma = 1.0;                              ///< [rad]
+  bool is_loop = false;
+};
+
+/// Weights of the edges: odometry drifts as a random walk in time, so that a long step, left by a
+/// removed keyframe, is as uncertain as the steps that it replaces.
+struct KeyframeGraphOptions {
+  int predecessors = 5;               ///< of the same sequence that a keyframe has an edge to
+  double position_drift = 0.02;       ///< of the odometry [m/sqrt(s)]
+  double yaw_drift = 0.002;           ///< of the odometry [rad/sqrt(s)]
+  double loop_position_sigma = 0.05;  ///< of a loop, beside its own covariance [m]
+  double loop_yaw_sigma = 0.01;       ///< of a loop, beside its own covariance [rad]
+
+  /// Throws InputError naming the option that is out of range.
+  void validate() const;
+};
+
+/// What became of a loop edge.
+enum class LoopOutcome {
+  kAdded,            ///< between keyframes that had a common frame already
+  kJoined,           ///< the same, and two sequences have a common frame from now on
+  kUnknownKeyframe,  ///< not added: one of its ends is not in the graph
+  kUnusable,         ///< not added: its ends are one keyframe, or it holds no finite numbers
+};
+
+/// Where an optimization wants keyframes to be.
+struct GraphCorrection {
+  /// By keyframe: map <- its odometry's world, yaw and translation only.
+  std::map<std::int64_t, Pose> T_mw;
+  /// The component that each sequence belonged to then.
+  std::map<std::uint32_t, std::uint32_t> components;
+};
+
+/// Keyframes, the odometry's edges between them and the loops (T. Qin, P. Li, S. Shen, "VINS-Mono",
+/// T-RO 2018, section VII). Sequences that a loop has joined form a component with one frame: that
+/// of its oldest sequence. The component of the very first sequence is the map.
+///
+/// Sequential edges are not stored: they are what the odometry poses say. So an updated pose
+/// remakes its edges, and across a removed keyframe the edges to it are composed, by themselves.
+class KeyframeGraph {
+ public:
+  explicit KeyframeGraph(const KeyframeGraphOptions& options = {});
+
+  /// A graph as it was stored: map poses are taken as they are, sequences joined as the loops say.
+  /// Throws InputError as addKeyframe() does, or where a loop's end is missing.
+  static KeyframeGraph restore(const KeyframeGraphOptions& options,
+                               const std::vector<KeyframeVertex>& vertices,
+                               const std::vector<LoopEdge>& loops);
+
+  /// Appends a keyframe to its sequence; its map pose follows from its sequence's drift. Throws
+  /// InputError where the id is there already, the stamp does not rise in the sequence, or the
+  /// pose holds no finite numbers.
+  void addKeyframe(std::int64_t id, std::uint32_t sequence, Stamp stamp, const Pose& T_wb);
+
+  /// The odometry's last word on a keyframe: its map pose is carried along. False: not there.
+  bool updateOdometry(std::int64_t id, const Pose& T_wb);
+
+  /// Adds a loop. Where it is the first between two components, the younger one is moved as a whole
+  /// by the transform with yaw only that fulfils the loop; the older one stays.
+  LoopOutcome addLoopEdge(const LoopEdge& edge);
+
+  /// Takes a keyframe out. Its loops are handed to its nearest neighbour in the sequence, along the
+  /// odometry; without neighbour they go too. False: not there.
+  bool removeKeyframe(std::int64_t id);
+
+  /// Moves keyframes as an optimization of an earlier state of this graph wants it. Keyframes added
+  /// since are moved as the newest optimized one of their sequence. Removed keyframes, and
+  /// sequences that have joined another component since, are passed over.
+  void apply(const GraphCorrection& correction);
+
+  /// map <- odometry world of a sequence, at its newest keyframe, yaw and translation only: what
+  /// "map -> odom" is made of. Nothing for an unknown sequence.
+  std::optional<Pose> drift(std::uint32_t sequence) const;
+
+  /// The sequence whose frame this one shares: itself, or an older one. Throws std::out_of_range
+  /// for an unknown sequence.
+  std::uint32_t component(std::uint32_t sequence) const {
+    return sequences_.at(sequence).component;
+  }
+
+  /// Whether a sequence belongs to the map.
+  bool inMap(std::uint32_t sequence) const;
+
+  /// All keyframes, by id.
+  const std::map<std::int64_t, KeyframeVertex>& vertices() const { return vertices_; }
+
+  /// Ids of a sequence's keyframes from old to new; empty for an unknown sequence.
+  const std::vector<std::int64_t>& keyframesOf(std::uint32_t sequence) const;
+
+  /// Sequences from old to new.
+  std::vector<std::uint32_t> sequences() const;
+
+  /// Loops as they were measured.
+  const std::vector<LoopEdge>& loops() const { return loops_; }
+
+  /// Sequential edges by sequence, then loop edges in the order in which they were added.
+  std::vector<HeadingEdge> edges() const;
+
+ private:
+  struct Sequence {
+    std::uint32_t component = 0;
+    std::vector<std::int64_t> ids;  ///< from old to new
+    Pose T_mw;                      ///< at the newest keyframe there has been
+  };
+
+  void insert(const KeyframeVertex& vertex);
+  void joinComponents(std::uint32_t older, std::uint32_t younger);
+  void moveComponent(std::uint32_t component, const Pose& T_new_old);
+  void noteDrift(Sequence* sequence) const;
+  Pose correctionOf(const LoopEdge& edge) const;
+  std::optional<std::int64_t> nearestNeighbour(const KeyframeVertex& vertex) const;
+  void handOverLoops(const KeyframeVertex& from, std::optional<std::int64_t> to);
+  void applyTo(Sequence* sequence, const GraphCorrection& correction);
+  HeadingEdge sequentialEdge(const KeyframeVertex& from, const KeyframeVertex& to) const;
+  HeadingEdge loopEdge(const LoopEdge& loop) const;
+
+  KeyframeGraphOptions options_;
+  std::map<std::int64_t, KeyframeVertex> vertices_;
+  std::map<std::uint32_t, Sequence> sequences_;
+  std::vector<LoopEdge> loops_;
+};
+
+}  // namespace vins

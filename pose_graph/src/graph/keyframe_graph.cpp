@@ -1,0 +1,290 @@
+#include "pose_graph/graph/keyframe_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "option_check.h"
+#include "pose_graph/graph/heading.h"
+#include "vins_core/input_error.h"
+
+namespace vins {
+namespace {
+
+bool isFinite(const Pose& pose) {
+  return pose.rotation.coeffs().allFinite() && pose.position.allFinite();
+}
+
+double durationBetween(const KeyframeVertex& a, const KeyframeVertex& b) {
+  // Stamps of a sequence rise; the floor keeps weights finite for rates beyond any camera's.
+  return std::max(1e-3, std::abs(toSeconds(b.stamp - a.stamp)));
+}
+
+}  // namespace
+
+void KeyframeGraphOptions::validate() const {
+  constexpr Range kSigma{1e-6, 1e3};
+  requireWithin("keyframe graph", "predecessors", predecessors, {1, 100});
+  requireWithin("keyframe graph", "position_drift", position_drift, kSigma);
+  requireWithin("keyframe graph", "yaw_drift", yaw_drift, kSigma);
+  requireWithin("keyframe graph", "loop_position_sigma", loop_position_sigma, kSigma);
+  requireWithin("keyframe graph", "loop_yaw_sigma", loop_yaw_sigma, kSigma);
+}
+
+KeyframeGraph::KeyframeGraph(const KeyframeGraphOptions& options) : options_(options) {
+  options_.validate();
+}
+
+KeyframeGraph KeyframeGraph::restore(const KeyframeGraphOptions& options,
+                                     const std::vector<KeyframeVertex>& vertices,
+                                     const std::vector<LoopEdge>& loops) {
+  KeyframeGraph graph(options);
+  for (const KeyframeVertex& vertex : vertices) graph.insert(vertex);
+  for (const LoopEdge& loop : loops) {
+    const auto query = graph.vertices_.find(loop.query_id), old = graph.vertices_.find(loop.old_id);
+    if (query == graph.vertices_.end() || old == graph.vertices_.end()) {
+      throw InputError("loop from keyframe " + std::to_string(loop.query_id) + " to " +
+                       std::to_string(loop.old_id) + ": found an end that is no keyframe");
+    }
+    const std::uint32_t of_query = graph.component(query->second.sequence);
+    const std::uint32_t of_old = graph.component(old->second.sequence);
+    graph.joinComponents(std::min(of_query, of_old), std::max(of_query, of_old));
+    graph.loops_.push_back(loop);
+  }
+  return graph;
+}
+
+void KeyframeGraph::insert(const KeyframeVertex& vertex) {
+  const std::string name = "keyframe " + std::to_string(vertex.id);
+  if (!isFinite(vertex.T_wb) || !isFinite(vertex.T_mb)) {
+    throw InputError(name + ": found a pose with numbers that are not finite");
+  }
+  const auto known = sequences_.find(vertex.sequence);
+  if (known != sequences_.end() && !known->second.ids.empty()) {
+    const Stamp last = vertices_.at(known->second.ids.back()).stamp;
+    if (vertex.stamp <= last) {
+      throw InputError(name + ": found stamp " + std::to_string(vertex.stamp) +
+                       " in a sequence that has reached " + std::to_string(last) +
+                       "; allowed: later ones, or a new sequence");
+    }
+  }
+  if (!vertices_.emplace(vertex.id, vertex).second) {
+    throw InputError(name + ": is in the graph already");
+  }
+  Sequence& sequence = sequences_[vertex.sequence];
+  if (known == sequences_.end()) sequence.component = vertex.sequence;
+  sequence.ids.push_back(vertex.id);
+  noteDrift(&sequence);
+}
+
+void KeyframeGraph::addKeyframe(std::int64_t id, std::uint32_t sequence, Stamp stamp,
+                                const Pose& T_wb) {
+  insert({id, sequence, stamp, T_wb, drift(sequence).value_or(Pose()) * T_wb});
+}
+
+bool KeyframeGraph::updateOdometry(std::int64_t id, const Pose& T_wb) {
+  const auto found = vertices_.find(id);
+  if (found == vertices_.end() || !isFinite(T_wb)) return false;
+  KeyframeVertex& vertex = found->second;
+  const Pose T_mw = driftOf(vertex.T_mb, vertex.T_wb);
+  vertex.T_wb = T_wb;
+  vertex.T_mb = T_mw * T_wb;
+  return true;
+}
+
+LoopOutcome KeyframeGraph::addLoopEdge(const LoopEdge& edge) {
+  const auto query = vertices_.find(edge.query_id), old = vertices_.find(edge.old_id);
+  if (query == vertices_.end() || old == vertices_.end()) return LoopOutcome::kUnknownKeyframe;
+  if (edge.query_id == edge.old_id || !isFinite(edge.T_old_query) || !edge.covariance.allFinite()) {
+    return LoopOutcome::kUnusable;
+  }
+  loops_.push_back(edge);
+  const std::uint32_t of_query = component(query->second.sequence);
+  const std::uint32_t of_old = component(old->second.sequence);
+  if (of_query == of_old) return LoopOutcome::kAdded;
+  const Pose T_new_old = correctionOf(edge);
+  if (of_old < of_query) {
+    moveComponent(of_query, T_new_old);
+  } else {
+    moveComponent(of_old, T_new_old.inverse());
+  }
+  joinComponents(std::min(of_query, of_old), std::max(of_query, of_old));
+  return LoopOutcome::kJoined;
+}
+
+Pose KeyframeGraph::correctionOf(const LoopEdge& edge) const {
+  const KeyframeVertex& query = vertices_.at(edge.query_id);
+  const KeyframeVertex& old = vertices_.at(edge.old_id);
+  const HeadingEdge relative = loopEdge(edge);
+  const Pose T_mw_old = driftOf(old.T_mb, old.T_wb);
+  const Pose T_mw_query = driftOf(query.T_mb, query.T_wb);
+  const Eigen::Quaterniond R_mw = T_mw_old.rotation * yawRotation(relative.yaw);
+  const Eigen::Vector3d p_m = old.T_mb.position + T_mw_old.rotation * relative.position;
+  return Pose(R_mw, p_m - R_mw * query.T_wb.position) * T_mw_query.inverse();
+}
+
+void KeyframeGraph::joinComponents(std::uint32_t older, std::uint32_t younger) {
+  for (auto& [number, sequence] : sequences_) {
+    if (sequence.component == younger) sequence.component = older;
+  }
+}
+
+void KeyframeGraph::moveComponent(std::uint32_t component, const Pose& T_new_old) {
+  for (auto& [number, sequence] : sequences_) {
+    if (sequence.component != component) continue;
+    for (const std::int64_t id : sequence.ids) {
+      KeyframeVertex& vertex = vertices_.at(id);
+      vertex.T_mb = T_new_old * vertex.T_mb;
+    }
+    sequence.T_mw = T_new_old * sequence.T_mw;
+  }
+}
+
+void KeyframeGraph::noteDrift(Sequence* sequence) const {
+  if (sequence->ids.empty()) return;
+  const KeyframeVertex& newest = vertices_.at(sequence->ids.back());
+  sequence->T_mw = driftOf(newest.T_mb, newest.T_wb);
+}
+
+std::optional<std::int64_t> KeyframeGraph::nearestNeighbour(const KeyframeVertex& vertex) const {
+  const std::vector<std::int64_t>& ids = keyframesOf(vertex.sequence);
+  const auto here = std::find(ids.begin(), ids.end(), vertex.id);
+  std::optional<std::int64_t> nearest;
+  if (here != ids.begin()) nearest = *(here - 1);
+  if (here + 1 == ids.end()) return nearest;
+  const bool later_is_nearer = !nearest || durationBetween(vertex, vertices_.at(*(here + 1))) <
+                                               durationBetween(vertices_.at(*nearest), vertex);
+  return later_is_nearer ? *(here + 1) : nearest;
+}
+
+void KeyframeGraph::handOverLoops(const KeyframeVertex& from, std::optional<std::int64_t> to) {
+  const auto ends_here = [&from](const LoopEdge& loop) {
+    return loop.query_id == from.id || loop.old_id == from.id;
+  };
+  if (to) {
+    const KeyframeVertex& heir = vertices_.at(*to);
+    const double duration = durationBetween(from, heir);
+    const double position_variance = options_.position_drift * options_.position_drift * duration;
+    const double yaw_variance = options_.yaw_drift * options_.yaw_drift * duration;
+    for (LoopEdge& loop : loops_) {
+      if (!ends_here(loop)) continue;
+      if (loop.query_id == from.id) {
+        loop.T_old_query = loop.T_old_query * (from.T_wb.inverse() * heir.T_wb);
+        loop.query_id = heir.id;
+        loop.query_stamp = heir.stamp;
+      } else {
+        loop.T_old_query = heir.T_wb.inverse() * from.T_wb * loop.T_old_query;
+        loop.old_id = heir.id;
+      }
+      loop.covariance.diagonal().head<3>().array() += position_variance;
+      loop.covariance.diagonal().tail<3>().array() += yaw_variance;
+    }
+  }
+  const auto useless = [&](const LoopEdge& loop) {
+    return ends_here(loop) || loop.query_id == loop.old_id;
+  };
+  loops_.erase(std::remove_if(loops_.begin(), loops_.end(), useless), loops_.end());
+}
+
+bool KeyframeGraph::removeKeyframe(std::int64_t id) {
+  const auto found = vertices_.find(id);
+  if (found == vertices_.end()) return false;
+  const KeyframeVertex vertex = found->second;
+  handOverLoops(vertex, nearestNeighbour(vertex));
+  std::vector<std::int64_t>& ids = sequences_.at(vertex.sequence).ids;
+  ids.erase(std::find(ids.begin(), ids.end(), id));
+  vertices_.erase(found);
+  return true;
+}
+
+void KeyframeGraph::apply(const GraphCorrection& correction) {
+  for (auto& [number, sequence] : sequences_) {
+    const auto then = correction.components.find(number);
+    const bool comparable =
+        then != correction.components.end() && then->second == sequence.component;
+    if (comparable) applyTo(&sequence, correction);
+  }
+}
+
+void KeyframeGraph::applyTo(Sequence* sequence, const GraphCorrection& correction) {
+  std::optional<Pose> T_new_old;  // of the newest optimized keyframe so far
+  for (const std::int64_t id : sequence->ids) {
+    KeyframeVertex& vertex = vertices_.at(id);
+    const auto wanted = correction.T_mw.find(id);
+    if (wanted != correction.T_mw.end()) {
+      T_new_old = wanted->second * driftOf(vertex.T_mb, vertex.T_wb).inverse();
+      vertex.T_mb = wanted->second * vertex.T_wb;
+    } else if (T_new_old) {
+      vertex.T_mb = *T_new_old * vertex.T_mb;
+    }
+  }
+  noteDrift(sequence);
+}
+
+std::optional<Pose> KeyframeGraph::drift(std::uint32_t sequence) const {
+  const auto found = sequences_.find(sequence);
+  if (found == sequences_.end()) return std::nullopt;
+  return found->second.T_mw;
+}
+
+bool KeyframeGraph::inMap(std::uint32_t sequence) const {
+  const auto found = sequences_.find(sequence);
+  return found != sequences_.end() && found->second.component == sequences_.begin()->first;
+}
+
+const std::vector<std::int64_t>& KeyframeGraph::keyframesOf(std::uint32_t sequence) const {
+  static const std::vector<std::int64_t> kNone;
+  const auto found = sequences_.find(sequence);
+  return found == sequences_.end() ? kNone : found->second.ids;
+}
+
+std::vector<std::uint32_t> KeyframeGraph::sequences() const {
+  std::vector<std::uint32_t> numbers;
+  for (const auto& item : sequences_) numbers.push_back(item.first);
+  return numbers;
+}
+
+HeadingEdge KeyframeGraph::sequentialEdge(const KeyframeVertex& from,
+                                          const KeyframeVertex& to) const {
+  const double root = std::sqrt(durationBetween(from, to));
+  return {from.id,
+          to.id,
+          to.T_wb.position - from.T_wb.position,
+          0.0,  // by the heading frames' definition: both have the odometry world's axes
+          options_.position_drift * root,
+          options_.yaw_drift * root,
+          false};
+}
+
+HeadingEdge KeyframeGraph::loopEdge(const LoopEdge& loop) const {
+  const Eigen::Quaterniond& R_w_old = vertices_.at(loop.old_id).T_wb.rotation;
+  const Eigen::Quaterniond& R_w_query = vertices_.at(loop.query_id).T_wb.rotation;
+  const Eigen::Quaterniond turn = R_w_old * loop.T_old_query.rotation * R_w_query.conjugate();
+  const Eigen::Vector3d up_query = R_w_query.conjugate() * Eigen::Vector3d::UnitZ();
+  const double position_variance = loop.covariance.topLeftCorner<3, 3>().trace() / 3.0;
+  const double yaw_variance = up_query.dot(loop.covariance.bottomRightCorner<3, 3>() * up_query);
+  return {loop.old_id,
+          loop.query_id,
+          R_w_old * loop.T_old_query.position,
+          yawOf(turn),
+          std::hypot(options_.loop_position_sigma, std::sqrt(std::max(0.0, position_variance))),
+          std::hypot(options_.loop_yaw_sigma, std::sqrt(std::max(0.0, yaw_variance))),
+          true};
+}
+
+std::vector<HeadingEdge> KeyframeGraph::edges() const {
+  std::vector<HeadingEdge> edges;
+  const auto reach = static_cast<std::size_t>(options_.predecessors);
+  for (const auto& [number, sequence] : sequences_) {
+    for (std::size_t to = 1; to < sequence.ids.size(); ++to) {
+      const KeyframeVertex& vertex = vertices_.at(sequence.ids[to]);
+      for (std::size_t from = to - std::min(to, reach); from < to; ++from) {
+        edges.push_back(sequentialEdge(vertices_.at(sequence.ids[from]), vertex));
+      }
+    }
+  }
+  for (const LoopEdge& loop : loops_) edges.push_back(loopEdge(loop));
+  return edges;
+}
+
+}  // namespace vins

@@ -1,0 +1,178 @@
+// Optimizes a pose graph in g2o's format and shows how the cost falls.
+
+#include <chrono>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <string>
+
+#include <boost/program_options.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "graph_picture.h"
+#include "pose_graph/graph/six_dof.h"
+#include "pose_graph/graph/six_dof_start.h"
+#include "pose_graph/map/g2o_file.h"
+#include "vins_core/input_error.h"
+
+namespace po = boost::program_options;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// The value that `options` has for a name given on the command line.
+template <typename T>
+T choose(const char* option, const std::map<std::string, T>& choices, const std::string& found) {
+  const auto choice = choices.find(found);
+  if (choice != choices.end()) return choice->second;
+  std::string allowed;
+  for (const auto& item : choices) allowed += (allowed.empty() ? "" : ", ") + item.first;
+  throw vins::InputError("--" + std::string(option) + ": found '" + found +
+                         "'; allowed: " + allowed);
+}
+
+enum class Start { kFile, kOdometry, kSpanningTree, kChordal };
+
+const std::map<std::string, Start> kStarts = {{"file", Start::kFile},
+                                              {"odometry", Start::kOdometry},
+                                              {"spanning-tree", Start::kSpanningTree},
+                                              {"chordal", Start::kChordal}};
+const std::map<std::string, vins::MinimizerMethod> kMethods = {
+    {"gauss-newton", vins::MinimizerMethod::kGaussNewton},
+    {"levenberg-marquardt", vins::MinimizerMethod::kLevenbergMarquardt},
+    {"dogleg", vins::MinimizerMethod::kDogleg}};
+const std::map<std::string, vins::KernelType> kKernels = {
+    {"none", vins::KernelType::kNone},
+    {"huber", vins::KernelType::kHuber},
+    {"cauchy", vins::KernelType::kCauchy},
+    {"geman-mcclure", vins::KernelType::kGemanMcClure}};
+
+po::options_description describeOptions() {
+  const vins::SixDofOptions defaults;
+  po::options_description options("Options");
+  auto add = options.add_options();
+  add("help", "print this text");
+  add("in", po::value<std::string>()->required(), "graph to read");
+  add("out", po::value<std::string>()->required(), "graph to write");
+  add("method", po::value<std::string>()->default_value("levenberg-marquardt"),
+      "gauss-newton, levenberg-marquardt or dogleg");
+  add("kernel", po::value<std::string>()->default_value("none"),
+      "of all edges: none, huber, cauchy or geman-mcclure");
+  add("kernel-width", po::value<double>()->default_value(defaults.kernel.width),
+      "whitened error from which on the kernel takes effect");
+  add("iterations", po::value<int>()->default_value(defaults.minimizer.max_iterations), "at most");
+  add("start", po::value<std::string>()->default_value("file"),
+      "poses to start from: file, odometry (edges between neighbours), spanning-tree, or chordal "
+      "(a linear estimate of the rotations)");
+  add("picture", po::value<std::string>(),
+      "image file for a drawing: the file's poses and the "
+      "result");
+  return options;
+}
+
+void printIteration(const vins::IterationReport& report) {
+  std::cout << std::setw(9) << report.iteration << std::setw(20) << std::setprecision(10)
+            << report.cost << std::setw(14) << std::setprecision(4) << report.step_length
+            << std::setw(14) << report.restraint << (report.accepted ? "" : "  rejected") << "\n";
+}
+
+vins::SixDofOptions readOptions(const po::variables_map& values) {
+  vins::SixDofOptions options;
+  options.kernel.type = choose("kernel", kKernels, values["kernel"].as<std::string>());
+  options.kernel.width = values["kernel-width"].as<double>();
+  options.minimizer.method = choose("method", kMethods, values["method"].as<std::string>());
+  options.minimizer.max_iterations = values["iterations"].as<int>();
+  options.minimizer.on_iteration = printIteration;
+  options.validate();
+  return options;
+}
+
+void placeAtStart(Start start, vins::RelativePoseGraph* graph) {
+  const auto begin = Clock::now();
+  if (start == Start::kOdometry) vins::startFromOdometry(graph);
+  if (start == Start::kSpanningTree) vins::startFromSpanningTree(graph);
+  if (start == Start::kChordal && !vins::startFromChordalRotations(graph)) {
+    std::cerr << "the chordal start has no solution; starting from the spanning tree\n";
+  }
+  if (start != Start::kFile) std::cout << "start: " << secondsSince(begin) << " s\n";
+}
+
+const char* toString(vins::MinimizerStatus status) {
+  if (status == vins::MinimizerStatus::kConverged) return "converged";
+  if (status == vins::MinimizerStatus::kFailed) return "failed: no finite solution";
+  return "out of iterations";
+}
+
+void writePicture(const std::string& path, const vins::RelativePoseGraph& before,
+                  const vins::RelativePoseGraph& after) {
+  bool written = false;
+  try {
+    written = cv::imwrite(path, vins::drawGraphs(before, after));
+  } catch (const cv::Exception&) {
+    // An extension that OpenCV does not know: the same message as for a folder that is not there.
+  }
+  if (!written) throw vins::InputError(path + ": cannot be written as an image");
+}
+
+/// True where the minimization came to an end.
+bool optimize(const po::variables_map& values) {
+  const vins::SixDofOptions options = readOptions(values);
+  const Start start = choose("start", kStarts, values["start"].as<std::string>());
+  vins::G2oFile file = vins::readG2oFile(values["in"].as<std::string>());
+  for (const std::string& warning : file.warnings) std::cerr << warning << "\n";
+  std::cout << file.graph.poses.size() << " poses in " << (file.graph.planar ? 2 : 3) << "-D, "
+            << file.graph.edges.size() << " edges\n";
+  const vins::RelativePoseGraph before = file.graph;
+  placeAtStart(start, &file.graph);
+  std::cout << "iteration                cost   step length     restraint\n";
+  const auto begin = Clock::now();
+  const vins::MinimizerSummary summary = vins::optimizeSixDof(&file.graph, options);
+  const double seconds = secondsSince(begin);
+  std::cout << toString(summary.status) << " after " << summary.iterations << " iterations and "
+            << std::setprecision(3) << seconds << " s: cost " << std::setprecision(10)
+            << summary.initial_cost << " -> " << summary.final_cost << "\n";
+  if (summary.status == vins::MinimizerStatus::kFailed) return false;
+  vins::writeG2oFile(values["out"].as<std::string>(), file);
+  if (values.count("picture") > 0) {
+    writePicture(values["picture"].as<std::string>(), before, file.graph);
+  }
+  return summary.status == vins::MinimizerStatus::kConverged;
+}
+
+bool printedHelp(const po::variables_map& values, const po::options_description& options) {
+  if (values.count("help") == 0) return false;
+  std::cout << "Optimizes a pose graph in g2o's format, of SE(2) or SE(3). Cost: half the sum of\n"
+               "the squared errors, weighted by the information matrices. Restraint: damping of\n"
+               "Levenberg-Marquardt, radius of dogleg.\n"
+               "Usage: optimize_g2o IN.g2o OUT.g2o [OPTIONS]\n"
+               "Example: optimize_g2o sphere.g2o best.g2o --start chordal --picture sphere.png\n"
+               "Exit code: 0 converged, 2 not (OUT is written unless it failed), 1 bad input.\n\n"
+            << options;
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const po::options_description options = describeOptions();
+    po::positional_options_description positional;
+    positional.add("in", 1).add("out", 1);
+    po::variables_map values;
+    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
+              values);
+    if (printedHelp(values, options)) return 0;
+    po::notify(values);
+    return optimize(values) ? 0 : 2;
+  } catch (const po::error& error) {
+    std::cerr << "optimize_g2o: " << error.what() << "; see --help\n";
+  } catch (const std::exception& error) {
+    std::cerr << "optimize_g2o: " << error.what() << "\n";
+  }
+  return 1;
+}
