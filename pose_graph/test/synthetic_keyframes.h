@@ -73,7 +73,28 @@ inline double positionError(const KeyframeGraph& graph, const std::vector<Pose>&
   return std::sqrt(sum / static_cast<double>(graph.vertices().size()));
 }
 
-/// Largest difference of two poses: position [m] and rotation [rad] together.
+/// Root mean square error of the loops' positions, by the poses that the graph has [m].
+inline double loopError(const KeyframeGraph& graph, const std::vector<Pose>& truth) {
+  double sum = 0.0;
+  for (const LoopEdge& loop : graph.loops()) {
+    const Pose T_oq =
+        graph.vertices().at(loop.old_id).T_mb.inverse() * graph.vertices().at(loop.query_id).T_mb;
+    const Pose T_oq_true = truth[static_cast<std::size_t>(loop.old_id)].inverse() *
+                           truth[static_cast<std::size_t>(loop.query_id)];
+    sum += (T_oq.position - T_oq_true.position).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(graph.loops().size()));
+}
+
+/// Trust in loops that are exact.
+inline KeyframeGraphOptions exactLoops() {
+  KeyframeGraphOptions options;
+  options.loop_position_sigma = 0.005;
+  options.loop_yaw_sigma = 0.001;
+  return options;
+}
+
+/// Difference of two poses: position [m] and rotation [rad] together.
 inline double difference(const Pose& a, const Pose& b) { return se3::log(a.inverse() * b).norm(); }
 
 }  // namespace vins::testing

@@ -89,9 +89,9 @@ template <int kDim>
 bool BlockCholesky<kDim>::finishColumn(int j) {
   const Eigen::LLT<Block> pivot(column_[index(j)]);
   if (pivot.info() != Eigen::Success || !column_[index(j)].allFinite()) return false;
-  L_.diagonal[index(j)] = pivot.matrixL();
   // The inverse of a small triangle once, then plain products.
-  const Block inverse = pivot.matrixL().solve(Block::Identity());
+  Block& inverse = L_.diagonal[index(j)];
+  inverse = pivot.matrixL().solve(Block::Identity());
   const Block inverse_transposed = inverse.transpose();
   for (std::size_t b = L_.begin[index(j)]; b < L_.begin[index(j) + 1]; ++b) {
     L_.below[b].noalias() = column_[index(L_.rows[b])].lazyProduct(inverse_transposed);
@@ -113,8 +113,7 @@ template <int kDim>
 void BlockCholesky<kDim>::solve(Eigen::VectorXd* b) const {
   using Segment = Eigen::Matrix<double, kDim, 1>;
   for (int j = 0; j < L_.size(); ++j) {
-    Segment x = b->segment<kDim>(kDim * j);
-    L_.diagonal[index(j)].template triangularView<Eigen::Lower>().solveInPlace(x);
+    const Segment x = L_.diagonal[index(j)].lazyProduct(b->segment<kDim>(kDim * j));
     b->segment<kDim>(kDim * j) = x;
     for (std::size_t k = L_.begin[index(j)]; k < L_.begin[index(j) + 1]; ++k) {
       b->segment<kDim>(kDim * L_.rows[k]) -= L_.below[k].lazyProduct(x);
@@ -125,9 +124,7 @@ void BlockCholesky<kDim>::solve(Eigen::VectorXd* b) const {
     for (std::size_t k = L_.begin[index(j)]; k < L_.begin[index(j) + 1]; ++k) {
       x -= L_.below[k].transpose().lazyProduct(b->segment<kDim>(kDim * L_.rows[k]));
     }
-    const Block upper = L_.diagonal[index(j)].transpose();
-    upper.template triangularView<Eigen::Upper>().solveInPlace(x);
-    b->segment<kDim>(kDim * j) = x;
+    b->segment<kDim>(kDim * j) = L_.diagonal[index(j)].transpose().lazyProduct(x);
   }
 }
 

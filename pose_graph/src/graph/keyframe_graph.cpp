@@ -246,7 +246,9 @@ std::vector<std::uint32_t> KeyframeGraph::sequences() const {
 
 HeadingEdge KeyframeGraph::sequentialEdge(const KeyframeVertex& from,
                                           const KeyframeVertex& to) const {
-  const double root = std::sqrt(durationBetween(from, to));
+  // A step of the odometry is part of edges of every span from one to `predecessors`, and what the
+  // edges of one span say of it, those of the others repeat: each is given its share.
+  const double root = std::sqrt(options_.predecessors * durationBetween(from, to));
   return {from.id,
           to.id,
           to.T_wb.position - from.T_wb.position,

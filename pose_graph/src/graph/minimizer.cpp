@@ -158,9 +158,9 @@ class Minimization {
       cost_ = summary_.final_cost = std::isfinite(trial) ? problem_->linearize() : trial;
     }
     report(step, relinearized_);
-    // Below this a change of the cost is rounding.
-    const double least = options_.cost_tolerance * before + 1e-300;
-    return promised <= least || (relinearized_ && std::abs(before - cost_) <= least);
+    // What a step promises, not what it gave: a step that overshoots to where the cost is flat
+    // gives little, and promises much.
+    return promised <= options_.cost_tolerance * before + options_.cost_floor;
   }
 
   void report(const VectorXd& step, bool accepted) const {
@@ -190,6 +190,7 @@ class Minimization {
 void MinimizerOptions::validate() const {
   requireWithin("minimizer", "max_iterations", max_iterations, {0, 100000});
   requireWithin("minimizer", "cost_tolerance", cost_tolerance, {0, 1});
+  requireWithin("minimizer", "cost_floor", cost_floor, {0, 1});
   requireWithin("minimizer", "initial_damping", initial_damping, {1e-16, 1e6});
 }
 

@@ -49,7 +49,7 @@ class BlockCholesky {
   bool finishColumn(int j);
   void enqueue(int k);
 
-  BlockMatrix<kDim> L_;                        ///< diagonal blocks are lower triangular
+  BlockMatrix<kDim> L_;                        ///< the diagonal holds the inverses of the factor's
   typename BlockMatrix<kDim>::Blocks column_;  ///< the column at work, by row
 
   // Finished columns k by the row of their next block that has not been used yet: lists linked by

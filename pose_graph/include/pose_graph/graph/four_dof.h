@@ -43,7 +43,9 @@ struct FourDofOptions {
   /// Of loop edges only: the odometry's have no outliers. 2 is the expected length of a whitened
   /// error of four numbers.
   RobustKernel loop_kernel{KernelType::kHuber, 2.0};
-  MinimizerOptions minimizer{MinimizerMethod::kLevenbergMarquardt, 20, 1e-6, 1e-6, {}};
+  /// Ends where a step promises less than 1e-5 of the cost: of 2,000 keyframes each then moves by
+  /// less than a millimetre.
+  MinimizerOptions minimizer{MinimizerMethod::kLevenbergMarquardt, 20, 1e-5, 1e-6, 1e-16, {}};
 
   /// Throws InputError naming the option that is out of range.
   void validate() const;

@@ -39,7 +39,8 @@ struct HeadingEdge {
 };
 
 /// Weights of the edges: odometry drifts as a random walk in time, so that a long step, left by a
-/// removed keyframe, is as uncertain as the steps that it replaces.
+/// removed keyframe, is as uncertain as the steps that it replaces. The edges to the predecessors
+/// tell the same story `predecessors` times over; their variances are greater by that factor.
 struct KeyframeGraphOptions {
   int predecessors = 5;               ///< of the same sequence that a keyframe has an edge to
   double position_drift = 0.02;       ///< of the odometry [m/sqrt(s)]

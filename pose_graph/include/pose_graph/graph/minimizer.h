@@ -48,8 +48,9 @@ struct IterationReport {
 struct MinimizerOptions {
   MinimizerMethod method = MinimizerMethod::kLevenbergMarquardt;
   int max_iterations = 100;
-  double cost_tolerance = 1e-10;  ///< ends when a step changes the cost by less than this share
+  double cost_tolerance = 1e-10;  ///< ends when a step promises less than this share of the cost
   double initial_damping = 1e-6;  ///< Levenberg-Marquardt's first, share of H's diagonal
+  double cost_floor = 1e-16;      ///< or less than this: rounding, where errors are whitened
   std::function<void(const IterationReport&)> on_iteration;  ///< called after each, if set
 
   /// Throws InputError naming the option that is out of range.
