@@ -36,7 +36,7 @@ class OptimizerThread {
   using Callback = std::function<void(const FourDofResult&)>;
 
   /// `graph` must outlive this. `on_merged` is called after each run, on the thread that ran it,
-  /// without any lock held. Throws InputError where an option is out of range.
+  /// without any lock held; it must not throw. Throws InputError where an option is out of range.
   OptimizerThread(SharedKeyframeGraph* graph, const FourDofOptions& options,
                   Callback on_merged = {});
 
