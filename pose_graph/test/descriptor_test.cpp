@@ -1,21 +1,16 @@
 #include "pose_graph/place/descriptor.h"
 
-#include <random>
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "random_descriptors.h"
+
 namespace vins {
 namespace {
 
-std::vector<BriefDescriptor> randomDescriptors(int count, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::vector<BriefDescriptor> descriptors(count);
-  for (auto& descriptor : descriptors) {
-    for (auto& word : descriptor) word = random();
-  }
-  return descriptors;
-}
+using testing::randomDescriptors;
 
 TEST(HammingDistance, CountsTheBitsThatDiffer) {
   BriefDescriptor a{}, b{};
