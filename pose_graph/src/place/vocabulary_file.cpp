@@ -109,6 +109,9 @@ class ForeignTree {
     std::vector<BriefDescriptor> descriptors{BriefDescriptor{}};
     std::vector<std::uint32_t> counts;
     std::vector<float> weights;
+    order.reserve(by_id_.size());
+    descriptors.reserve(by_id_.size());
+    counts.reserve(by_id_.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
       const std::int32_t id = order[i];
       for (std::uint32_t child = children_[id]; child < children_[id + 1]; ++child) {
