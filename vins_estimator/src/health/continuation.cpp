@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vins_core/so3.h"
+#include "vins_core/heading.h"
 #include "vins_estimator/inertial/preintegration.h"
 
 namespace vins {
@@ -13,13 +13,6 @@ constexpr double kLongestCarry = 1.0;    // [s]: then accelerations can no longe
 constexpr double kUnknownSpeed = 1.0;    // [m/s], of a body that was lost
 constexpr double kUnknownTurn = 0.02;    // [rad/s], of a gyroscope that was silent or is in doubt
 constexpr double kLongestMemory = 10.0;  // [s]; first frames are younger
-
-/// The turn about the vertical that takes `from` nearest to `to`.
-Eigen::Quaterniond yawBetween(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
-  const Eigen::Quaterniond turn = to * from.conjugate();
-  const double yaw = 2.0 * std::atan2(turn.z(), turn.w());
-  return so3::exp(yaw * Eigen::Vector3d::UnitZ());
-}
 
 NavState moved(const Eigen::Quaterniond& turn, const Eigen::Vector3d& shift,
                const NavState& state) {
@@ -75,7 +68,8 @@ void Continuation::apply(Initialization* initialization) const {
   if (!isActive() || initialization->frames.empty()) return;
   const NavState first = initialization->frames.front().state;
   const Entry& last = at(initialization->frames.front().features.stamp);
-  const Eigen::Quaterniond turn = yawBetween(first.T_wb.rotation, last.state.T_wb.rotation);
+  const Eigen::Quaterniond turn =
+      yawRotation(yawOf(last.state.T_wb.rotation * first.T_wb.rotation.conjugate()));
   const Eigen::Vector3d shift = last.state.T_wb.position - turn * first.T_wb.position;
   for (InitialFrame& frame : initialization->frames) frame.state = moved(turn, shift, frame.state);
   initialization->mean = moved(turn, shift, initialization->mean);

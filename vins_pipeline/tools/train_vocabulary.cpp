@@ -1,0 +1,140 @@
+// Trains the vocabulary by which places are recognised, on images.
+
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <boost/program_options.hpp>
+#include <opencv2/core/utility.hpp>
+
+#include "image_source.h"
+#include "pose_graph/place/brief.h"
+#include "pose_graph/place/spread_corners.h"
+#include "pose_graph/place/vocabulary_file.h"
+#include "pose_graph/place/vocabulary_training.h"
+#include "vins_core/input_error.h"
+#include "vins_core/progress_bar.h"
+
+namespace po = boost::program_options;
+
+namespace {
+
+using ImageDescriptors = std::vector<std::vector<vins::BriefDescriptor>>;
+
+std::vector<vins::ImageLoader> listImages(const po::variables_map& values) {
+  vins::ImageSourceOptions options;
+  options.imu_topic = values["imu-topic"].as<std::string>();
+  options.image_topic = values["image-topic"].as<std::string>();
+  options.every = values["every"].as<double>();
+  std::vector<vins::ImageLoader> images;
+  for (const auto& path : values["input"].as<std::vector<std::string>>()) {
+    const auto found = vins::findImages(path, options);
+    std::cout << path << ": " << found.size() << " images\n";
+    images.insert(images.end(), found.begin(), found.end());
+  }
+  return images;
+}
+
+/// Where there are too many, each image gives its share.
+void thinOut(std::size_t most, ImageDescriptors* images) {
+  std::size_t all = 0;
+  for (const auto& image : *images) all += image.size();
+  if (all <= most) return;
+  for (auto& image : *images) {
+    const std::size_t count = image.size() * most / all;
+    for (std::size_t i = 0; i < count; ++i) image[i] = image[i * image.size() / count];
+    image.resize(count);
+  }
+}
+
+ImageDescriptors describe(const std::vector<vins::ImageLoader>& images,
+                          const po::variables_map& values) {
+  const vins::BriefExtractor brief(vins::BriefPattern::load(values["pattern"].as<std::string>()));
+  vins::SpreadCornersOptions corners;
+  corners.max_corners = values["descriptors-per-image"].as<int>();
+  corners.border = brief.border();
+  corners.validate();
+  ImageDescriptors descriptors;
+  auto bar = vins::ProgressBar::onStandardError("describing images", images.size());
+  for (const auto& load : images) {
+    const cv::Mat image = load();
+    descriptors.push_back(
+        brief.describe(image, vins::findSpreadCorners(image, {}, corners)).descriptors);
+    bar.update(descriptors.size());
+  }
+  bar.finish();
+  thinOut(values["max-descriptors"].as<std::size_t>(), &descriptors);
+  return descriptors;
+}
+
+void train(const po::variables_map& values) {
+  cv::setNumThreads(1);
+  vins::VocabularyTrainingOptions options;
+  options.branching = values["k"].as<int>();
+  options.levels = values["levels"].as<int>();
+  options.seed = values["seed"].as<std::uint64_t>();
+  options.fewest_to_split = values["fewest-to-split"].as<int>();
+  options.validate();
+  const ImageDescriptors images = describe(listImages(values), values);
+  constexpr double kSteps = 1000.0;
+  auto bar = vins::ProgressBar::onStandardError("training", static_cast<std::size_t>(kSteps));
+  const vins::Vocabulary vocabulary = vins::trainVocabulary(
+      images, options, [&](double share) { bar.update(static_cast<std::size_t>(kSteps * share)); });
+  bar.finish();
+  const std::string path = values["output"].as<std::string>();
+  vins::writeVocabulary(path, vocabulary);
+  std::cout << "written: " << path << ", " << vocabulary.wordCount() << " words of "
+            << vocabulary.nodeCount() << " nodes\n";
+}
+
+po::options_description describeOptions() {
+  const vins::VocabularyTrainingOptions defaults;
+  po::options_description options("Options");
+  auto add = options.add_options();
+  add("help", "print this text");
+  add("input", po::value<std::vector<std::string>>()->required(),
+      "images, folders of images, folders in the ASL layout, ROS bags");
+  add("output,o", po::value<std::string>()->required(), "vocabulary to write");
+  add("pattern", po::value<std::string>()->required(), "BRIEF's pattern: brief_pattern.yml");
+  add("k", po::value<int>()->default_value(defaults.branching), "children of a node");
+  add("levels", po::value<int>()->default_value(defaults.levels), "from the root to the words");
+  add("seed", po::value<std::uint64_t>()->default_value(defaults.seed),
+      "same seed and images, same vocabulary");
+  add("fewest-to-split", po::value<int>()->default_value(defaults.fewest_to_split),
+      "descriptors of a node that gets children");
+  add("max-descriptors", po::value<std::size_t>()->default_value(1'000'000),
+      "to train on; each image gives its share");
+  add("descriptors-per-image", po::value<int>()->default_value(500), "at most");
+  add("every", po::value<double>()->default_value(0.5),
+      "one image of a recording in this time [s]");
+  add("image-topic", po::value<std::string>()->default_value("/cam0/image_raw"), "of recordings");
+  add("imu-topic", po::value<std::string>()->default_value("/imu0"), "of recordings");
+  return options;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const po::options_description options = describeOptions();
+    po::positional_options_description positional;
+    positional.add("input", -1);
+    po::variables_map values;
+    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
+              values);
+    if (values.count("help") != 0) {
+      std::cout << "Trains the vocabulary by which the pose graph recognises places.\n"
+                   "Usage: train_vocabulary INPUT ... -o OUT.bin --pattern brief_pattern.yml\n\n"
+                << options;
+      return 0;
+    }
+    po::notify(values);
+    train(values);
+    return 0;
+  } catch (const po::error& error) {
+    std::cerr << "train_vocabulary: " << error.what() << "; see --help\n";
+  } catch (const std::exception& error) {
+    std::cerr << "train_vocabulary: " << error.what() << "\n";
+  }
+  return 1;
+}
