@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "vins_estimator/health/rest_check.h"
 #include "vins_estimator/visual/keyframe_choice.h"
 #include "vins_estimator/window/loop_closing.h"
 #include "vins_estimator/window/marginalization.h"
@@ -101,6 +102,7 @@ NavState WindowTracker::append(const FrameMeasurements& measurements, bool stand
   WindowFrame frame{next_frame_id_++, measurements.frame.stamp, WindowState(predicted),
                     std::move(imu)};
   frame.stands_still = stands_still;
+  frame.has_rested = stands_still;
   frame.td = window_.rig.td;
   if (!measurements.imu.empty()) {
     frame.measured_rate = measurements.imu.back().angular_velocity;
@@ -166,6 +168,9 @@ void WindowTracker::slide(std::uint32_t sequence, EstimatorResult* result) {
   result->statistics.keyframe = keep;
   if (!keep) {
     dropFrame(&window_, second);
+    WindowFrame& newest = window_.frames.back();
+    newest.has_rested = newest.has_rested &&
+                        looksTheSame(window_.landmarks, window_.frames[second - 1].id, newest.id);
     return;
   }
   makeKeyframe(second, sequence, result);
@@ -191,6 +196,7 @@ bool WindowTracker::isKeyframeAt(std::size_t index) const {
   choice.min_tracks = options_.min_tracks;
   int tracks = 0;
   for (const auto& [id, track] : window_.landmarks.tracks()) tracks += track.isSeenIn(frame.id);
+  if (frame.has_rested) choice = restingChoice(choice);
   return isKeyframe(choice, parallax, tracks, toSeconds(frame.stamp - last.stamp));
 }
 

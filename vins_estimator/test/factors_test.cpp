@@ -6,6 +6,8 @@
 #include "vins_estimator/factors/imu_factor.h"
 #include "vins_estimator/factors/parameter_blocks.h"
 #include "vins_estimator/factors/prior_factor.h"
+#include "vins_estimator/factors/upright_factor.h"
+#include "vins_estimator/factors/zero_motion_factor.h"
 
 namespace vins {
 namespace {
@@ -240,6 +242,50 @@ TEST_F(BearingFactorTest, HostJacobianIsThatOfNumericDifferences) {
   double* jacobians[] = {J.data()};
   factor.Evaluate(parameters, r.data(), jacobians);
   EXPECT_LT((J - numericJacobian(f, 3)).norm(), 1e-8 * J.norm());
+}
+
+TEST(ZeroMotion, JacobiansAreThoseOfNumericDifferences) {
+  Random random(11);
+  const NavState i = random.navState();
+  NavState j = i;
+  j.T_wb = i.T_wb * Pose(so3::exp(Vector3d(0.1, -0.05, 0.2)), Vector3d(0.02, 0.1, -0.03));
+  const ZeroMotionNoise noise{0.01, 0.5, 0.2};
+  Eigen::Matrix<double, 6, 6> J_i, J_j;
+  zeroMotionResidual(noise, i.T_wb, j.T_wb, &J_i, &J_j);
+  const auto residual = [&](const NavState& a, const NavState& b) -> VectorXd {
+    return zeroMotionResidual(noise, a.T_wb, b.T_wb, nullptr, nullptr);
+  };
+  const MatrixXd numeric_i =
+      numericJacobian([&](const VectorXd& d) { return residual(movedPose(i, d), j); }, 6);
+  const MatrixXd numeric_j =
+      numericJacobian([&](const VectorXd& d) { return residual(i, movedPose(j, d)); }, 6);
+  EXPECT_LT((J_i - numeric_i).norm(), 1e-9 * numeric_i.norm());
+  EXPECT_LT((J_j - numeric_j).norm(), 1e-9 * numeric_j.norm());
+}
+
+TEST(ZeroMotion, DoesNotKnowPlaceAndHeading) {
+  Random random(12);
+  const Pose T_wi = random.pose(), T_wj = random.pose();
+  const Pose turn(so3::exp(Vector3d(0.0, 0.0, 0.7)), Vector3d(3.0, -2.0, 5.0));
+  EXPECT_LT((zeroMotionResidual({}, turn * T_wi, turn * T_wj, nullptr, nullptr) -
+             zeroMotionResidual({}, T_wi, T_wj, nullptr, nullptr))
+                .norm(),
+            1e-9);
+  EXPECT_LT(zeroMotionResidual({}, T_wi, T_wi, nullptr, nullptr).norm(), 1e-9);
+}
+
+TEST(Upright, JacobianIsThatOfNumericDifferences) {
+  Random random(13);
+  const NavState state = random.navState();
+  const Vector3d up_b = (state.T_wb.rotation.conjugate() * Vector3d(0.1, 0.05, 1.0)).normalized();
+  Eigen::Matrix<double, 2, 3> J;
+  uprightResidual(up_b, 20.0, state.T_wb.rotation, &J);
+  const MatrixXd numeric = numericJacobian(
+      [&](const VectorXd& d) -> VectorXd {
+        return uprightResidual(up_b, 20.0, movedPose(state, d).T_wb.rotation, nullptr);
+      },
+      6);
+  EXPECT_LT((J - numeric.rightCols<3>()).norm(), 1e-8 * numeric.norm());
 }
 
 TEST(PriorFactor, IsLinearInTheDifferences) {

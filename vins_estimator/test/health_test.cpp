@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator_test_values.h"
 #include "synthetic_flight.h"
 #include "vins_core/input_error.h"
 #include "vins_estimator/health/continuation.h"
 #include "vins_estimator/health/failure_detector.h"
+#include "vins_estimator/health/rest_check.h"
 #include "vins_estimator/health/track_watch.h"
 
 namespace vins {
@@ -141,6 +143,40 @@ TEST(Continuation, DoesNothingWhereThereIsNothingToGoOnFrom) {
   continuation.addFrame(flight.record(1.0, 0.2).back());
   continuation.apply(&initialization);
   EXPECT_EQ(minus(initialization.frames.front().state, before).norm(), 0.0);
+}
+
+/// Two frames of 60 tracks, of which the second is turned by a rotation vector [px].
+Landmarks twoFrames(const Vector3d& turn_px, double noise_px) {
+  testing::Random random(9);
+  Landmarks landmarks(0.5);
+  const Eigen::Quaterniond turn = so3::exp(turn_px / 460.0);
+  FeatureFrame first, second;
+  for (int i = 0; i < 60; ++i) {
+    FeatureObservation feature;
+    feature.id = i;
+    const Vector3d bearing = Vector3d(random.normal(), random.normal(), 2.0).normalized();
+    const auto noisy = [&](const Vector3d& b) {
+      return (b + noise_px / 460.0 * random.normal3()).normalized();
+    };
+    feature.bearing = noisy(bearing);
+    first.observations.push_back(feature);
+    feature.bearing = noisy(turn * bearing);
+    second.observations.push_back(feature);
+  }
+  landmarks.addFrame(0, first);
+  landmarks.addFrame(1, second);
+  return landmarks;
+}
+
+TEST(RestCheck, SeesACreepBelowTheNoiseOfATrack) {
+  EXPECT_TRUE(looksTheSame(twoFrames(Vector3d::Zero(), 0.2), 0, 1));
+  // Known to 0.4 px x sqrt(2) / sqrt(60): the bounds lie three deviations from what is to be seen.
+  EXPECT_FALSE(looksTheSame(twoFrames({0.0, 0.8, 0.0}, 0.4), 0, 1));
+  EXPECT_FALSE(looksTheSame(twoFrames({0.0, 0.0, 1.5}, 0.4), 0, 1));
+}
+
+TEST(RestCheck, DoesNotTrustAFewTracks) {
+  EXPECT_FALSE(looksTheSame(twoFrames(Vector3d::Zero(), 0.0), 0, 1, 0.3, 61));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "vins_estimator/inertial/preintegration.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -53,8 +54,8 @@ Matrix15d transition(const Midpoint& m) {
 }
 
 /// Motion of a deviation s at a frequency f, drawn as a straight line over dt, is missed by
-/// s (2 pi f dt)^2 / 8 until that reaches s itself: next to nothing at the usual rates, it is what a
-/// gap in the samples costs. One error for the whole of dt is written as independent ones of its
+/// s (2 pi f dt)^2 / 8 until that reaches s itself: next to nothing at the usual rates, it is what
+/// a gap in the samples costs. One error for the whole of dt is written as independent ones of its
 /// steps.
 Preintegration::MissedMotion missedMotion(double dt, int steps) {
   constexpr double kFrequency = 1.5;     // [Hz], of a vehicle's or a hand's motion
@@ -146,14 +147,14 @@ void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
   beta_.setZero();
   jacobian_.setIdentity();
   covariance_.setZero();
-  sqrt_information_known_ = false;
+  sqrt_information_known_ = gyroscope_sqrt_information_known_ = false;
   for (const std::vector<ImuSample>& piece : pieces_) integratePiece(piece);
 }
 
 void Preintegration::integratePiece(const std::vector<ImuSample>& samples) {
   const ImuNoise noise = noiseOf(noise_, samples);
   for (std::size_t i = 1; i < samples.size(); ++i) bridge(samples[i - 1], samples[i], noise);
-  sqrt_information_known_ = false;
+  sqrt_information_known_ = gyroscope_sqrt_information_known_ = false;
 }
 
 void Preintegration::bridge(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
@@ -212,6 +213,19 @@ const Matrix15d& Preintegration::sqrtInformation() const {
     sqrt_information_known_ = true;
   }
   return sqrt_information_;
+}
+
+const Matrix15d& Preintegration::gyroscopeSqrtInformation() const {
+  if (gyroscope_sqrt_information_known_) return gyroscope_sqrt_information_;
+  const std::array<int, 9> rows = {3, 4, 5, 9, 10, 11, 12, 13, 14};
+  const Eigen::Matrix<double, 9, 9> covariance = covariance_(rows, rows);
+  const Eigen::Matrix<double, 9, 9> information =
+      covariance.llt().solve(Eigen::Matrix<double, 9, 9>::Identity());
+  gyroscope_sqrt_information_.setZero();
+  gyroscope_sqrt_information_(rows, rows) =
+      Eigen::Matrix<double, 9, 9>(information.llt().matrixU());
+  gyroscope_sqrt_information_known_ = true;
+  return gyroscope_sqrt_information_;
 }
 
 Preintegration::Increments Preintegration::corrected(const Vector3d& accelerometer_bias,

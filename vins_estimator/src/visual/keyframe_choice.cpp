@@ -3,23 +3,12 @@
 #include <algorithm>
 
 namespace vins {
-namespace {
-
-const TrackObservation* observationIn(const Landmark& track, FrameId frame) {
-  for (const TrackObservation& observation : track.observations) {
-    if (observation.frame == frame) return &observation;
-  }
-  return nullptr;
-}
-
-}  // namespace
-
 FrameParallax parallaxBetween(const Landmarks& landmarks, FrameId a, FrameId b,
                               const Eigen::Quaterniond& R_ba) {
   FrameParallax result;
   for (const auto& [id, track] : landmarks.tracks()) {
-    const TrackObservation* in_a = observationIn(track, a);
-    const TrackObservation* in_b = observationIn(track, b);
+    const TrackObservation* in_a = track.observationIn(a);
+    const TrackObservation* in_b = track.observationIn(b);
     if (in_a == nullptr || in_b == nullptr) continue;
     const Eigen::Vector3d shift = R_ba * in_a->measured.bearing - in_b->measured.bearing;
     result.parallax += shift.norm() / in_b->angular_resolution;
@@ -27,6 +16,12 @@ FrameParallax parallaxBetween(const Landmarks& landmarks, FrameId a, FrameId b,
   }
   if (result.shared > 0) result.parallax /= result.shared;
   return result;
+}
+
+KeyframeChoiceOptions restingChoice(KeyframeChoiceOptions moving) {
+  moving.min_shared_ratio = 0.0;
+  moving.max_interval = 30.0;
+  return moving;
 }
 
 bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& against_last, int tracks,

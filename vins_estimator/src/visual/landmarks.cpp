@@ -47,9 +47,10 @@ bool takeAway(FrameId frame, const CameraPoses& cameras, Landmark* landmark) {
 
 }  // namespace
 
-bool Landmark::isSeenIn(FrameId frame) const {
-  return std::any_of(observations.begin(), observations.end(),
-                     [&](const auto& o) { return o.frame == frame; });
+const TrackObservation* Landmark::observationIn(FrameId frame) const {
+  const auto it = std::find_if(observations.begin(), observations.end(),
+                               [&](const auto& o) { return o.frame == frame; });
+  return it == observations.end() ? nullptr : &*it;
 }
 
 void Landmarks::addFrame(FrameId frame, const FeatureFrame& features) {

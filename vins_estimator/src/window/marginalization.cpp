@@ -109,7 +109,7 @@ void stackImu(const SlidingWindow& window, const Columns& columns, StackedSystem
   const ImuJacobians J =
       imuJacobians(j.imu, window.g_w, i.state.linearizationPoint(i.state.value()),
                    j.state.linearizationPoint(j.state.value()));
-  const Matrix15d& weight = j.imu.sqrtInformation();
+  const Matrix15d& weight = j.imuWeight();
   const Vector15d r = imuResidual(j.imu, window.g_w, i.state.value(), j.state.value());
   auto rows = system->next(15);
   rows.middleCols<6>(columns.pose(0)) = weight * J.J_pose_i;
@@ -124,8 +124,23 @@ void stackStillness(const SlidingWindow& window, const Columns& columns, Stacked
   const WindowFrame& oldest = window.frames.front();
   if (!oldest.stands_still) return;
   auto rows = system->next(3);
-  rows.middleCols<3>(columns.motion(0)).diagonal().setConstant(1.0 / window.still_velocity);
-  rows.rightCols<1>() = oldest.state.value().v_w / window.still_velocity;
+  rows.middleCols<3>(columns.motion(0)).diagonal().setConstant(1.0 / window.rest.velocity);
+  rows.rightCols<1>() = oldest.state.value().v_w / window.rest.velocity;
+}
+
+/// That the body has rested from the oldest frame to the next.
+void stackRest(const SlidingWindow& window, const Columns& columns, StackedSystem* system) {
+  if (!window.frames[1].has_rested) return;
+  const WindowState& i = window.frames[0].state;
+  const WindowState& j = window.frames[1].state;
+  Eigen::Matrix<double, 6, 6> J_i, J_j;
+  zeroMotionResidual(window.rest, i.poseForJacobians(i.value().T_wb),
+                     j.poseForJacobians(j.value().T_wb), &J_i, &J_j);
+  auto rows = system->next(6);
+  rows.middleCols<6>(columns.pose(0)) = J_i;
+  rows.middleCols<6>(columns.pose(1)) = J_j;
+  rows.rightCols<1>() =
+      zeroMotionResidual(window.rest, i.value().T_wb, j.value().T_wb, nullptr, nullptr);
 }
 
 /// Stacks a landmark's rows, freed of the landmark: QR of its own three columns, whose rows go.
@@ -177,7 +192,8 @@ void shiftToFirstEstimates(const SlidingWindow& window, const Columns& columns, 
 /// Everything that the oldest frame is in, as rows.
 StackedSystem stackAll(const SlidingWindow& window, const Columns& columns,
                        const std::vector<LinearizedLandmark>& landmarks) {
-  Index count = window.prior.A.rows() + 15 + (window.frames.front().stands_still ? 3 : 0);
+  Index count = window.prior.A.rows() + 15 + (window.frames.front().stands_still ? 3 : 0) +
+                (window.frames[1].has_rested ? 6 : 0);
   for (const auto& landmark : landmarks) {
     count += 2 * static_cast<Index>(landmark.observations.size()) - 3;
   }
@@ -187,6 +203,7 @@ StackedSystem stackAll(const SlidingWindow& window, const Columns& columns,
   const Index first_row = system.used;
   stackImu(window, columns, &system);
   stackStillness(window, columns, &system);
+  stackRest(window, columns, &system);
   for (const auto& landmark : landmarks) stackLandmark(landmark, columns, &system);
   shiftToFirstEstimates(window, columns, first_row, &system);
   return system;

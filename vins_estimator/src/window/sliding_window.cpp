@@ -34,6 +34,7 @@ void dropFrame(SlidingWindow* window, std::size_t index) {
     Preintegration joined = std::move(frames[index].imu);
     joined.append(frames[index + 1].imu);
     frames[index + 1].imu = std::move(joined);
+    frames[index + 1].has_rested = frames[index + 1].has_rested && frames[index].has_rested;
   }
   frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(index));
   for (Prior::Part& part : window->prior.parts) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "vins_core/so3.h"
 #include "vins_estimator/factors/imu_factor.h"
 #include "vins_estimator/factors/upright_factor.h"
 
@@ -130,11 +129,15 @@ double WindowSystem::cost(const Point& point) const {
   for (std::size_t i = 1; i < frameCount(); ++i) {
     const Preintegration& imu = window_.frames[i].imu;
     const Vector15d r = imuResidual(imu, window_.g_w, states[i - 1], states[i]);
-    cost += 0.5 * (imu.sqrtInformation() * r).squaredNorm();
+    cost += 0.5 * (window_.frames[i].imuWeight() * r).squaredNorm();
   }
   for (std::size_t i = 0; i < frameCount(); ++i) {
-    if (!window_.frames[i].stands_still) continue;
-    cost += 0.5 * (states[i].v_w / window_.still_velocity).squaredNorm();
+    const WindowFrame& frame = window_.frames[i];
+    if (frame.stands_still) cost += 0.5 * (states[i].v_w / window_.rest.velocity).squaredNorm();
+    if (!frame.has_rested || i == 0) continue;
+    cost +=
+        0.5 * zeroMotionResidual(window_.rest, states[i - 1].T_wb, states[i].T_wb, nullptr, nullptr)
+                  .squaredNorm();
   }
   if (window_.loop) {
     cost += 0.5 * uprightResidual(window_.loop->up_b, 1.0 / window_.old_tilt,
@@ -153,6 +156,7 @@ bool WindowSystem::linearize(const Point& point) {
   for (std::size_t k = 0; k < landmarks_.size(); ++k) addLandmark(k);
   for (std::size_t i = 1; i < frameCount(); ++i) addImu(i);
   for (std::size_t i = 0; i < frameCount(); ++i) addStillness(i);
+  for (std::size_t i = 1; i < frameCount(); ++i) addRest(i);
   addOldTilt();
   addPrior();
   llt_.compute(H_);
@@ -243,8 +247,9 @@ void WindowSystem::addImu(std::size_t frame) {
   // Motions i and j, then poses i and j: as the system has them.
   Eigen::Matrix<double, 15, 30> whole;
   whole << J.J_motion_i, J.J_motion_j, J.J_pose_i, J.J_pose_j;
-  whole = (imu.sqrtInformation() * whole).eval();
-  const Vector15d r = imu.sqrtInformation() * imuResidual(imu, window_.g_w, value_i, value_j);
+  const Matrix15d& weight = window_.frames[frame].imuWeight();
+  whole = (weight * whole).eval();
+  const Vector15d r = weight * imuResidual(imu, window_.g_w, value_i, value_j);
   const Index motion = motionColumn(frame - 1);
   const Index pose = poseColumn(frame - 1);
   const auto J_motion = whole.leftCols<18>();
@@ -258,10 +263,27 @@ void WindowSystem::addImu(std::size_t frame) {
 
 void WindowSystem::addStillness(std::size_t frame) {
   if (!window_.frames[frame].stands_still) return;
-  const double weight = 1.0 / (window_.still_velocity * window_.still_velocity);
+  const double weight = 1.0 / (window_.rest.velocity * window_.rest.velocity);
   const Index velocity = motionColumn(frame);
   H_.diagonal().segment<3>(velocity).array() += weight;
   g_.segment<3>(velocity) += weight * at_.values.states[frame].v_w;
+}
+
+/// The frame stands where the one before it stood.
+void WindowSystem::addRest(std::size_t frame) {
+  if (!window_.frames[frame].has_rested) return;
+  const Pose& T_wi = at_.values.states[frame - 1].T_wb;
+  const Pose& T_wj = at_.values.states[frame].T_wb;
+  Eigen::Matrix<double, 6, 12> J;
+  Eigen::Matrix<double, 6, 6> J_i, J_j;
+  zeroMotionResidual(window_.rest, window_.frames[frame - 1].state.poseForJacobians(T_wi),
+                     window_.frames[frame].state.poseForJacobians(T_wj), &J_i, &J_j);
+  J << J_i, J_j;
+  const Eigen::Matrix<double, 6, 1> r =
+      zeroMotionResidual(window_.rest, T_wi, T_wj, nullptr, nullptr);
+  const Index pose = poseColumn(frame - 1);
+  H_.block<12, 12>(pose, pose) += J.transpose() * J;
+  g_.segment<12>(pose) += J.transpose() * r;
 }
 
 void WindowSystem::addOldTilt() {
@@ -282,102 +304,6 @@ void WindowSystem::addPrior() {
     g_.segment(column(part), part.size()) += g.segment(row, part.size());
     row += part.size();
   }
-}
-
-MatrixXd WindowSystem::sqrtInformation() const {
-  const auto L = llt_.matrixLLT().bottomRightCorner(stepCount(), stepCount());
-  return MatrixXd(L.triangularView<Eigen::Lower>()).transpose();
-}
-
-VectorXd WindowSystem::sqrtGradient() const { return y_.tail(stepCount()); }
-
-VectorXd WindowSystem::motionSteps(const VectorXd& steps) const {
-  const auto motions = static_cast<Index>(9 * frameCount());
-  const auto L = llt_.matrixLLT();
-  // L_mm^T d_m = -(y_m + L_sm^T d_s)
-  VectorXd motion_steps =
-      -(y_.head(motions) + L.bottomLeftCorner(stepCount(), motions).transpose() * steps);
-  L.topLeftCorner(motions, motions)
-      .triangularView<Eigen::Lower>()
-      .transpose()
-      .solveInPlace(motion_steps);
-  return motion_steps;
-}
-
-WindowSystem::Point WindowSystem::moved(const VectorXd& steps) const {
-  const VectorXd motion_steps = motionSteps(steps);
-  Point point = at_;
-  for (std::size_t i = 0; i < frameCount(); ++i) {
-    Vector15d d;
-    d << steps.segment<6>(static_cast<Index>(6 * i)), motion_steps.segment<9>(motionColumn(i));
-    point.values.states[i] = plus(at_.values.states[i], d);
-  }
-  for (Pose& old : point.values.old) {
-    const Eigen::Matrix<double, 6, 1> d = steps.segment<6>(static_cast<Index>(6 * frameCount()));
-    old.position += d.head<3>();
-    old.rotation = (old.rotation * so3::exp(Eigen::Vector3d(d.tail<3>()))).normalized();
-  }
-  if (refinesRig()) point.values.rig = plus(at_.values.rig, Vector7d(steps.tail<7>()));
-  moveLandmarks(steps, &point.landmarks);
-  return point;
-}
-
-void WindowSystem::moveLandmarks(const VectorXd& steps,
-                                 std::vector<LandmarkParameters>* landmarks) const {
-  for (std::size_t k = 0; k < landmarks_.size(); ++k) {
-    Eigen::Vector3d g = eliminations_[k].g;
-    for (std::size_t a = landmarks_[k].begin; a < landmarks_[k].end; ++a) {
-      g += W_[a].transpose() * steps.segment<6>(static_cast<Index>(6 * observations_[a].target));
-    }
-    if (refinesRig()) g += eliminations_[k].W_rig.transpose() * steps.tail<7>();
-    (*landmarks)[k] -= eliminations_[k].H_inverse * g;
-  }
-}
-
-Matrix15d WindowSystem::newestCovariance() const {
-  const std::size_t newest = frameCount() - 1;
-  Eigen::MatrixXd selection = MatrixXd::Zero(H_.rows(), 15);
-  selection.block<6, 6>(poseColumn(newest), 0).setIdentity();
-  selection.block<9, 9>(motionColumn(newest), 6).setIdentity();
-  llt_.matrixL().solveInPlace(selection);
-  return selection.transpose() * selection;
-}
-
-Matrix7d WindowSystem::rigCovariance() const {
-  if (!refinesRig()) return Matrix7d::Zero();
-  MatrixXd selection = MatrixXd::Zero(H_.rows(), 7);
-  selection.bottomRows<7>().setIdentity();
-  llt_.matrixL().solveInPlace(selection);
-  return selection.transpose() * selection;
-}
-
-Eigen::Matrix<double, 6, 6> WindowSystem::relativeCovariance(std::size_t a, std::size_t b) const {
-  const Pose T_wa = poseOf(a);
-  const Pose T_ab = T_wa.inverse() * poseOf(b);
-  const Eigen::Matrix3d R_aw = T_wa.rotation.conjugate().toRotationMatrix();
-  // Rows: derivatives of position and rotation (right) of T_ab by the two poses' errors.
-  MatrixXd selection = MatrixXd::Zero(H_.rows(), 6);
-  selection.block<3, 3>(poseColumn(a), 0) = -R_aw.transpose();
-  selection.block<3, 3>(poseColumn(a) + 3, 0) = so3::hat(T_ab.position).transpose();
-  selection.block<3, 3>(poseColumn(b), 0) = R_aw.transpose();
-  selection.block<3, 3>(poseColumn(a) + 3, 3) = -T_ab.rotation.toRotationMatrix();
-  selection.block<3, 3>(poseColumn(b) + 3, 3).setIdentity();
-  llt_.matrixL().solveInPlace(selection);
-  return selection.transpose() * selection;
-}
-
-const Pose& WindowSystem::poseOf(std::size_t view) const {
-  return view < frameCount() ? at_.values.states[view].T_wb : at_.values.old[view - frameCount()];
-}
-
-MatrixXd WindowSystem::information() const {
-  const MatrixXd whole = H_.selfadjointView<Eigen::Lower>();
-  std::vector<Index> order;
-  for (std::size_t frame = 0; frame < frameCount(); ++frame) {
-    for (Index i = 0; i < 6; ++i) order.push_back(poseColumn(frame) + i);
-    for (Index i = 0; i < 9; ++i) order.push_back(motionColumn(frame) + i);
-  }
-  return whole(order, order);
 }
 
 }  // namespace vins

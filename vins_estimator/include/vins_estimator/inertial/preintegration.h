@@ -56,6 +56,10 @@ class Preintegration {
   /// Upper triangular S with S^T S = covariance()^-1. Computed when asked for the first time.
   const Matrix15d& sqrtInformation() const;
 
+  /// sqrtInformation() of rotation and biases alone, zero in the rows of alpha and beta: what is left
+  /// without the accelerometer.
+  const Matrix15d& gyroscopeSqrtInformation() const;
+
   struct Increments {
     Eigen::Vector3d alpha;
     Eigen::Quaterniond gamma;
@@ -94,6 +98,8 @@ class Preintegration {
   Matrix15d covariance_ = Matrix15d::Zero();
   mutable Matrix15d sqrt_information_;
   mutable bool sqrt_information_known_ = false;
+  mutable Matrix15d gyroscope_sqrt_information_;
+  mutable bool gyroscope_sqrt_information_known_ = false;
 };
 
 }  // namespace vins

@@ -26,6 +26,11 @@ struct KeyframeChoiceOptions {
   double max_interval = 2.0;      ///< since the last keyframe [s]
 };
 
+/// For a camera that has rested since the last keyframe. New keyframes would tell nothing new, but
+/// each that is marginalized for them lets what is not observable at rest - tilt against the
+/// accelerometer's bias - slide a little.
+KeyframeChoiceOptions restingChoice(KeyframeChoiceOptions moving);
+
 /// The frame is worth keeping: `tracks` features, `seconds` after the last keyframe.
 bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& against_last, int tracks,
                 double seconds);

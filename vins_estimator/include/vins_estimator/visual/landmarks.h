@@ -34,7 +34,9 @@ struct Landmark {
   LandmarkParameters parameters;  ///< (u, v, rho)
 
   FrameId host() const { return observations.front().frame; }
-  bool isSeenIn(FrameId frame) const;
+  /// Its place in a frame; null where it was not seen.
+  const TrackObservation* observationIn(FrameId frame) const;
+  bool isSeenIn(FrameId frame) const { return observationIn(frame) != nullptr; }
 };
 
 /// Where the camera stood when it took a frame (T_wc), asked by FrameId.

@@ -11,6 +11,7 @@
 #include "vins_core/pose.h"
 #include "vins_core/time.h"
 #include "vins_estimator/factors/prior_factor.h"
+#include "vins_estimator/factors/zero_motion_factor.h"
 #include "vins_estimator/inertial/nav_state.h"
 #include "vins_estimator/inertial/preintegration.h"
 #include "vins_estimator/inertial/rig_calibration.h"
@@ -26,9 +27,18 @@ struct WindowFrame {
   Preintegration imu;             ///< from the frame before it in the window
   std::int64_t keyframe_id = -1;  ///< not negative where it has become a keyframe
   bool stands_still = false;      ///< images and IMU say so
+  bool has_rested = false;        ///< since the frame before it in the window
   double td = 0.0;                ///< with which it was timed [s]
   Eigen::Vector3d measured_rate = Eigen::Vector3d::Zero();  ///< of the gyroscope, then [rad/s]
   Matrix15d covariance = Matrix15d::Zero();                 ///< of its state when it was the newest
+
+  /// Weight of its IMU residual. At rest the accelerometer is left out: that the body stands still
+  /// is known better otherwise. It would measure gravity and its own bias for as long as the rest
+  /// lasts, with a precision at which linearizations a tenth of a degree apart contradict each
+  /// other: tilt and bias, which are not told apart at rest, would slide.
+  const Matrix15d& imuWeight() const {
+    return has_rested ? imu.gyroscopeSqrtInformation() : imu.sqrtInformation();
+  }
 };
 
 /// A keyframe of long ago that sees what the window sees: a loop. Where it stands in the odometry's
@@ -62,8 +72,8 @@ struct SlidingWindow {
   Matrix7d rig_covariance = Matrix7d::Identity();  ///< of its errors, as last known
   std::optional<OldKeyframe> loop;
   Eigen::Vector3d g_w = Eigen::Vector3d(0.0, 0.0, -9.81);
-  double still_velocity = 0.01;  ///< deviation of the velocity of frames that stand still [m/s]
-  double old_tilt = 0.005;       ///< deviation of an old keyframe's roll and pitch [rad]
+  ZeroMotionNoise rest;     ///< of frames that stand still
+  double old_tilt = 0.005;  ///< deviation of an old keyframe's roll and pitch [rad]
 
   /// The present ones.
   WindowValues values() const;

@@ -97,6 +97,7 @@ class WindowSystem {
   void eliminateFromRig(const FlatLandmark& landmark, const Elimination& elimination);
   void addImu(std::size_t frame);
   void addStillness(std::size_t frame);
+  void addRest(std::size_t frame);
   void addOldTilt();
   void addPrior();
   Eigen::VectorXd priorResidual(const Point& point) const;

@@ -1,0 +1,31 @@
+#include "vins_estimator/health/rest_check.h"
+
+#include <Eigen/Cholesky>
+
+#include "vins_core/so3.h"
+
+namespace vins {
+
+bool looksTheSame(const Landmarks& landmarks, FrameId a, FrameId b, double max_shift,
+                  int min_shared) {
+  // The small turn that takes the bearings of a to those of b, by least squares in pixels.
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  double resolution = 0.0;
+  int shared = 0;
+  for (const auto& [id, track] : landmarks.tracks()) {
+    const TrackObservation* in_a = track.observationIn(a);
+    const TrackObservation* in_b = track.observationIn(b);
+    if (in_a == nullptr || in_b == nullptr) continue;
+    const Eigen::Matrix3d hat = so3::hat(in_a->measured.bearing);
+    H += hat.transpose() * hat;
+    g += hat.transpose() * (in_a->measured.bearing - in_b->measured.bearing);
+    resolution += in_b->angular_resolution;
+    ++shared;
+  }
+  if (shared < min_shared) return false;
+  const Eigen::Vector3d turn = H.ldlt().solve(g);
+  return turn.norm() * shared <= max_shift * resolution;
+}
+
+}  // namespace vins
