@@ -95,20 +95,24 @@ void WindowTracker::addLoop(const LoopMatch& match) {
 }
 
 NavState WindowTracker::append(const FrameMeasurements& measurements, bool stands_still) {
-  const NavState& last = window_.frames.back().state.value();
+  const WindowFrame& before = window_.frames.back();
+  const NavState& last = before.state.value();
+  const FrameId id = next_frame_id_++;
+  window_.landmarks.addFrame(id, measurements.frame);
+  // A rest ends when the images say so: half a second's figures tremble at their bounds.
+  const bool has_rested =
+      stands_still || (before.has_rested && looksTheSame(window_.landmarks, before.id, id));
   Preintegration imu(options_.imu, last.accelerometer_bias, last.gyroscope_bias);
-  imu.integrate(measurements.imu);
+  imu.integrate(measurements.imu, has_rested);
   const NavState predicted = imu.predict(last, window_.g_w);
-  WindowFrame frame{next_frame_id_++, measurements.frame.stamp, WindowState(predicted),
-                    std::move(imu)};
+  WindowFrame frame{id, measurements.frame.stamp, WindowState(predicted), std::move(imu)};
   frame.stands_still = stands_still;
-  frame.has_rested = stands_still;
+  frame.has_rested = has_rested;
   frame.td = window_.rig.td;
   if (!measurements.imu.empty()) {
     frame.measured_rate = measurements.imu.back().angular_velocity;
   }
   if (!options_.first_estimates) frame.state.ignoreFirstEstimates();
-  window_.landmarks.addFrame(frame.id, measurements.frame);
   window_.frames.push_back(std::move(frame));
   return predicted;
 }

@@ -1,7 +1,6 @@
 #include "vins_estimator/inertial/preintegration.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -109,6 +108,10 @@ double readingVariance(const std::vector<ImuSample>& samples) {
   return squares.maxCoeff() / (6.0 * static_cast<double>(samples.size() - 2));
 }
 
+/// Least density of an accelerometer at rest [m/s^2/sqrt(Hz)]: a minute tells gravity to 0.04
+/// degrees.
+constexpr double kAtRest = 0.05;
+
 /// The noise of a piece: raised by what of its vibration does not average out.
 ImuNoise noiseOf(const ImuNoise& usual, const std::vector<ImuSample>& samples) {
   ImuNoise noise = usual;
@@ -127,14 +130,14 @@ Preintegration::Preintegration(const ImuNoise& noise, const Vector3d& accelerome
                                const Vector3d& gyroscope_bias)
     : noise_(noise), accelerometer_bias_(accelerometer_bias), gyroscope_bias_(gyroscope_bias) {}
 
-void Preintegration::integrate(const std::vector<ImuSample>& samples) {
+void Preintegration::integrate(const std::vector<ImuSample>& samples, bool at_rest) {
   if (samples.size() < 2) return;
-  pieces_.push_back(samples);
+  pieces_.push_back({samples, at_rest});
   integratePiece(pieces_.back());
 }
 
 void Preintegration::append(const Preintegration& next) {
-  for (const std::vector<ImuSample>& piece : next.pieces_) integrate(piece);
+  for (const Piece& piece : next.pieces_) integrate(piece.samples, piece.at_rest);
 }
 
 void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
@@ -147,14 +150,16 @@ void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
   beta_.setZero();
   jacobian_.setIdentity();
   covariance_.setZero();
-  sqrt_information_known_ = gyroscope_sqrt_information_known_ = false;
-  for (const std::vector<ImuSample>& piece : pieces_) integratePiece(piece);
+  sqrt_information_known_ = false;
+  for (const Piece& piece : pieces_) integratePiece(piece);
 }
 
-void Preintegration::integratePiece(const std::vector<ImuSample>& samples) {
-  const ImuNoise noise = noiseOf(noise_, samples);
+void Preintegration::integratePiece(const Piece& piece) {
+  const std::vector<ImuSample>& samples = piece.samples;
+  ImuNoise noise = noiseOf(noise_, samples);
+  if (piece.at_rest) noise.accelerometer_noise = std::max(noise.accelerometer_noise, kAtRest);
   for (std::size_t i = 1; i < samples.size(); ++i) bridge(samples[i - 1], samples[i], noise);
-  sqrt_information_known_ = gyroscope_sqrt_information_known_ = false;
+  sqrt_information_known_ = false;
 }
 
 void Preintegration::bridge(const ImuSample& from, const ImuSample& to, const ImuNoise& noise) {
@@ -213,19 +218,6 @@ const Matrix15d& Preintegration::sqrtInformation() const {
     sqrt_information_known_ = true;
   }
   return sqrt_information_;
-}
-
-const Matrix15d& Preintegration::gyroscopeSqrtInformation() const {
-  if (gyroscope_sqrt_information_known_) return gyroscope_sqrt_information_;
-  const std::array<int, 9> rows = {3, 4, 5, 9, 10, 11, 12, 13, 14};
-  const Eigen::Matrix<double, 9, 9> covariance = covariance_(rows, rows);
-  const Eigen::Matrix<double, 9, 9> information =
-      covariance.llt().solve(Eigen::Matrix<double, 9, 9>::Identity());
-  gyroscope_sqrt_information_.setZero();
-  gyroscope_sqrt_information_(rows, rows) =
-      Eigen::Matrix<double, 9, 9>(information.llt().matrixU());
-  gyroscope_sqrt_information_known_ = true;
-  return gyroscope_sqrt_information_;
 }
 
 Preintegration::Increments Preintegration::corrected(const Vector3d& accelerometer_bias,

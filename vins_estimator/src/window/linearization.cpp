@@ -33,13 +33,14 @@ WindowGeometry geometryOf(const SlidingWindow& window, const WindowValues& value
     geometry.linearization.push_back(
         viewGeometry(carried(frame.state.poseForJacobians(state.T_wb), rate, late), T_bc));
     geometry.td_rates.push_back(rate);
+    geometry.shows_rig.push_back(window.refines_rig && !frame.stands_still);
   }
   for (const Pose& T_wb : values.old) {
     geometry.present.push_back(viewGeometry(T_wb, T_bc));
     geometry.linearization.push_back(geometry.present.back());
     geometry.td_rates.emplace_back(Eigen::Matrix<double, 6, 1>::Zero());
+    geometry.shows_rig.push_back(window.refines_rig);
   }
-  geometry.refines_rig = window.refines_rig;
   return geometry;
 }
 
@@ -72,7 +73,7 @@ LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
   out.J_host = J.J_host;
   out.J_target = J.J_target;
   out.J_landmark = J.J_landmark;
-  if (geometry.refines_rig) {
+  if (geometry.shows_rig[target]) {
     out.J_rig.leftCols<6>() = extrinsicJacobian(measured, anchor, geometry.linearization[host],
                                                 geometry.linearization[target], landmark);
     out.J_rig.col(6) = J.J_host * geometry.td_rates[host] + J.J_target * geometry.td_rates[target];

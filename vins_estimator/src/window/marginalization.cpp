@@ -109,7 +109,7 @@ void stackImu(const SlidingWindow& window, const Columns& columns, StackedSystem
   const ImuJacobians J =
       imuJacobians(j.imu, window.g_w, i.state.linearizationPoint(i.state.value()),
                    j.state.linearizationPoint(j.state.value()));
-  const Matrix15d& weight = j.imuWeight();
+  const Matrix15d& weight = j.imu.sqrtInformation();
   const Vector15d r = imuResidual(j.imu, window.g_w, i.state.value(), j.state.value());
   auto rows = system->next(15);
   rows.middleCols<6>(columns.pose(0)) = weight * J.J_pose_i;

@@ -129,7 +129,7 @@ double WindowSystem::cost(const Point& point) const {
   for (std::size_t i = 1; i < frameCount(); ++i) {
     const Preintegration& imu = window_.frames[i].imu;
     const Vector15d r = imuResidual(imu, window_.g_w, states[i - 1], states[i]);
-    cost += 0.5 * (window_.frames[i].imuWeight() * r).squaredNorm();
+    cost += 0.5 * (imu.sqrtInformation() * r).squaredNorm();
   }
   for (std::size_t i = 0; i < frameCount(); ++i) {
     const WindowFrame& frame = window_.frames[i];
@@ -247,7 +247,7 @@ void WindowSystem::addImu(std::size_t frame) {
   // Motions i and j, then poses i and j: as the system has them.
   Eigen::Matrix<double, 15, 30> whole;
   whole << J.J_motion_i, J.J_motion_j, J.J_pose_i, J.J_pose_j;
-  const Matrix15d& weight = window_.frames[frame].imuWeight();
+  const Matrix15d& weight = imu.sqrtInformation();
   whole = (weight * whole).eval();
   const Vector15d r = weight * imuResidual(imu, window_.g_w, value_i, value_j);
   const Index motion = motionColumn(frame - 1);

@@ -24,8 +24,12 @@ class Preintegration {
   /// Carries on over neighbouring samples, which have rising stamps; the first must be the last one
   /// of the samples before (same stamp), or the very first. Where the samples show vibration, the
   /// accelerometer's noise is raised by ImuNoise::vibration_share of it; over a gap between two of
-  /// them the noise is that of a motion that nobody saw.
-  void integrate(const std::vector<ImuSample>& samples);
+  /// them the noise is that of a motion that nobody saw. `at_rest`: that the body stands still is
+  /// known better otherwise, and the accelerometer counts for little. It would measure gravity and
+  /// its own bias for as long as the rest lasts, with a precision at which linearizations a tenth
+  /// of a degree apart contradict each other: tilt and bias, which are not told apart at rest,
+  /// would slide.
+  void integrate(const std::vector<ImuSample>& samples, bool at_rest = false);
 
   /// Carries on over the samples of the interval that follows.
   void append(const Preintegration& next);
@@ -56,10 +60,6 @@ class Preintegration {
   /// Upper triangular S with S^T S = covariance()^-1. Computed when asked for the first time.
   const Matrix15d& sqrtInformation() const;
 
-  /// sqrtInformation() of rotation and biases alone, zero in the rows of alpha and beta: what is left
-  /// without the accelerometer.
-  const Matrix15d& gyroscopeSqrtInformation() const;
-
   struct Increments {
     Eigen::Vector3d alpha;
     Eigen::Quaterniond gamma;
@@ -72,15 +72,20 @@ class Preintegration {
   /// The state at j of a body that stands at `state` at i. `g_w`: gravity, (0, 0, -g).
   NavState predict(const NavState& state, const Eigen::Vector3d& g_w) const;
 
-  /// Variances of a step's mean readings, besides the sensor's noise: the motion between two samples
-  /// is not known.
+  /// Variances of a step's mean readings, besides the sensor's noise: the motion between two
+  /// samples is not known.
   struct MissedMotion {
     double acceleration = 0.0;  ///< [m^2/s^4]
     double turn_rate = 0.0;     ///< [rad^2/s^2]
   };
 
  private:
-  void integratePiece(const std::vector<ImuSample>& samples);
+  /// Samples in a row.
+  struct Piece {
+    std::vector<ImuSample> samples;
+    bool at_rest;
+  };
+  void integratePiece(const Piece& piece);
   void bridge(const ImuSample& from, const ImuSample& to, const ImuNoise& noise);
   void step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise,
             const MissedMotion& missed);
@@ -88,7 +93,7 @@ class Preintegration {
   ImuNoise noise_;
   Eigen::Vector3d accelerometer_bias_;
   Eigen::Vector3d gyroscope_bias_;
-  std::vector<std::vector<ImuSample>> pieces_;  ///< samples in a row
+  std::vector<Piece> pieces_;
 
   double duration_ = 0.0;
   Eigen::Vector3d alpha_ = Eigen::Vector3d::Zero();
@@ -98,8 +103,6 @@ class Preintegration {
   Matrix15d covariance_ = Matrix15d::Zero();
   mutable Matrix15d sqrt_information_;
   mutable bool sqrt_information_known_ = false;
-  mutable Matrix15d gyroscope_sqrt_information_;
-  mutable bool gyroscope_sqrt_information_known_ = false;
 };
 
 }  // namespace vins

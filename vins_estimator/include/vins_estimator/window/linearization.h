@@ -35,7 +35,9 @@ struct WindowGeometry {
   std::vector<ViewGeometry> linearization;
   /// Change of a view's pose with td: position [m/s], rotation [rad/s, on the right].
   std::vector<Eigen::Matrix<double, 6, 1>> td_rates;
-  bool refines_rig = false;  ///< Jacobians by the rig are wanted
+  /// Jacobians by the rig are wanted: not of views at rest, where nothing shows it but the noise of
+  /// the poses would seem to.
+  std::vector<bool> shows_rig;
 };
 WindowGeometry geometryOf(const SlidingWindow& window, const WindowValues& values);
 

@@ -31,14 +31,6 @@ struct WindowFrame {
   double td = 0.0;                ///< with which it was timed [s]
   Eigen::Vector3d measured_rate = Eigen::Vector3d::Zero();  ///< of the gyroscope, then [rad/s]
   Matrix15d covariance = Matrix15d::Zero();                 ///< of its state when it was the newest
-
-  /// Weight of its IMU residual. At rest the accelerometer is left out: that the body stands still
-  /// is known better otherwise. It would measure gravity and its own bias for as long as the rest
-  /// lasts, with a precision at which linearizations a tenth of a degree apart contradict each
-  /// other: tilt and bias, which are not told apart at rest, would slide.
-  const Matrix15d& imuWeight() const {
-    return has_rested ? imu.gyroscopeSqrtInformation() : imu.sqrtInformation();
-  }
 };
 
 /// A keyframe of long ago that sees what the window sees: a loop. Where it stands in the odometry's
