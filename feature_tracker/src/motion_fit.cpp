@@ -5,8 +5,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "tangent_basis.h"
 #include "vins_core/so3.h"
+#include "vins_core/tangent_basis.h"
 
 namespace vins {
 namespace {
