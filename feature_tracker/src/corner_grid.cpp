@@ -12,15 +12,16 @@ constexpr int kWindow = 2 * kRadius + 1;
 constexpr double kScharrUnit = 32.0;  // of a gradient of one grey value per pixel
 constexpr std::size_t kChoices = 4;   // corners of a cell that compete
 constexpr int kFewestCells = 4;       // that are searched where corners are missing at all
-constexpr int kCellsPerCorner = 2;    // that are searched for each missing corner
+constexpr int kRest = 3;              // images in which a cell that gave nothing is not searched
+constexpr int kCellsPerCorner = 1;    // that are searched for each missing corner
 
-/// Root of the smaller eigenvalue of [xx xy; xy yy].
-inline float weakestGradient(float xx, float xy, float yy) {
+/// The smaller eigenvalue of [xx xy; xy yy].
+inline float smallerEigenvalue(float xx, float xy, float yy) {
   const float half_trace = 0.5F * (xx + yy);
   const float half_difference = 0.5F * (xx - yy);
   const float root = std::sqrt(half_difference * half_difference + xy * xy);
-  const float weakest = half_trace - root;
-  return std::sqrt(weakest > 0.0F ? weakest : 0.0F);
+  const float smaller = half_trace - root;
+  return smaller > 0.0F ? smaller : 0.0F;
 }
 
 /// Products xx, xy, yy of gradients x, y that lie in turn.
@@ -46,11 +47,12 @@ inline float sumOfSeven(const float* a) {
   return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + a[6]);
 }
 
-/// Scores of a row of pixels from the column sums of the structure tensor.
-void scoreRow(const float* xx, const float* xy, const float* yy, int count, float* scores) {
+/// Squares of the scores of a row of pixels from the column sums of the structure tensor.
+void scoreRow(const float* xx, const float* xy, const float* yy, int count, float* squares) {
   constexpr float kUnit = static_cast<float>(1.0 / (kScharrUnit * kWindow));
   for (int i = 0; i < count; ++i) {
-    scores[i] = kUnit * weakestGradient(sumOfSeven(xx + i), sumOfSeven(xy + i), sumOfSeven(yy + i));
+    squares[i] = kUnit * kUnit *
+                 smallerEigenvalue(sumOfSeven(xx + i), sumOfSeven(xy + i), sumOfSeven(yy + i));
   }
 }
 
@@ -144,10 +146,15 @@ void CornerGrid::countCorners(const std::vector<cv::Point2f>& occupied) {
 }
 
 std::vector<int> CornerGrid::cellsToSearch(int missing) {
+  // After a blackout no cell may wait.
+  const bool in_need = 2 * missing > options_.max_corners;
   std::vector<int> empty, others;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     // Counted from a place that moves on, so that no part of the image is always last.
     const int cell = static_cast<int>((next_cell_ + i) % cells_.size());
+    const bool rests = cells_[cell].rest > 0;
+    if (rests) --cells_[cell].rest;
+    if (rests && !in_need) continue;
     (cells_[cell].corners == 0 ? empty : others).push_back(cell);
   }
   std::vector<int> cells = std::move(empty);
@@ -165,7 +172,8 @@ void CornerGrid::computeScores(const cv::Mat& gradients, const cv::Rect& area) {
   const int rows = area.height + 2 * kRadius;
   products_.create(3 * std::max(rows, products_.rows / 3), std::max(width, products_.cols));
   columns_sums_.create(3, std::max(width, columns_sums_.cols));
-  scores_.create(std::max(area.height, scores_.rows), std::max(area.width, scores_.cols));
+  squared_scores_.create(std::max(area.height, squared_scores_.rows),
+                         std::max(area.width, squared_scores_.cols));
   for (int row = 0; row < rows; ++row) {
     multiplyGradients(gradients.ptr<short>(area.y + row - kRadius) + 2 * (area.x - kRadius), width,
                       products_[3 * row], products_[3 * row + 1], products_[3 * row + 2]);
@@ -179,30 +187,34 @@ void CornerGrid::computeScores(const cv::Mat& gradients, const cv::Rect& area) {
     }
     if (row + 1 < kWindow) continue;
     scoreRow(columns_sums_[0], columns_sums_[1], columns_sums_[2], area.width,
-             scores_[row + 1 - kWindow]);
+             squared_scores_[row + 1 - kWindow]);
   }
 }
 
 Corner CornerGrid::cornerAt(const cv::Rect& area, int row, int column) const {
-  const float score = scores_(row, column);
-  const float dx = parabolaTop(scores_(row, column - 1), score, scores_(row, column + 1));
-  const float dy = parabolaTop(scores_(row - 1, column), score, scores_(row + 1, column));
+  const auto score = [&](int dy, int dx) {
+    return std::sqrt(squared_scores_(row + dy, column + dx));
+  };
+  const float top = score(0, 0);
+  const float dx = parabolaTop(score(0, -1), top, score(0, 1));
+  const float dy = parabolaTop(score(-1, 0), top, score(1, 0));
   return {
       cv::Point2f(static_cast<float>(area.x + column) + dx, static_cast<float>(area.y + row) + dy),
-      score};
+      top};
 }
 
 void CornerGrid::searchCell(const cv::Mat& gradients, const cv::Rect& area,
                             std::vector<Corner>* corners) {
   computeScores(gradients, area);
   found_in_cell_.clear();
+  const float least = static_cast<float>(options_.quality * options_.quality);
   for (int row = 1; row + 1 < area.height; ++row) {
-    const float* above = scores_[row - 1];
-    const float* here = scores_[row];
-    const float* below = scores_[row + 1];
+    const float* above = squared_scores_[row - 1];
+    const float* here = squared_scores_[row];
+    const float* below = squared_scores_[row + 1];
     for (int i = 1; i + 1 < area.width; ++i) {
       const float score = here[i];
-      if (score < options_.quality || score <= here[i - 1] || score < here[i + 1]) continue;
+      if (score < least || score <= here[i - 1] || score < here[i + 1]) continue;
       const bool is_top = score > above[i - 1] && score > above[i] && score > above[i + 1] &&
                           score >= below[i - 1] && score >= below[i] && score >= below[i + 1];
       if (is_top) found_in_cell_.push_back(cornerAt(area, row, i));
@@ -233,7 +245,9 @@ std::vector<Corner> CornerGrid::detect(const cv::Mat& gradients,
     const cv::Rect& own = cells_[cell].area;
     const cv::Rect area =
         cv::Rect(own.x - 1, own.y - 1, own.width + 2, own.height + 2) & searchable;
+    const std::size_t before = candidates.size();
     if (area.width > 2 && area.height > 2) searchCell(gradients, area, &candidates);
+    if (candidates.size() == before) cells_[cell].rest = kRest;
   }
   std::stable_sort(candidates.begin(), candidates.end(), byScore);
   for (const Corner& corner : candidates) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tangent_basis.h"
 #include "vins_core/so3.h"
+#include "vins_core/tangent_basis.h"
 
 namespace vins {
 namespace {

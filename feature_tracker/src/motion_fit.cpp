@@ -5,8 +5,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "tangent_basis.h"
 #include "vins_core/so3.h"
+#include "vins_core/tangent_basis.h"
 
 namespace vins {
 namespace {
@@ -16,7 +16,6 @@ using Eigen::Vector3d;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 
-constexpr double kPixelSigma = 0.3;      // of a tracked point [px], to weigh it against the prior
 constexpr double kDirectionSigma = 1.0;  // keeps the direction's equations regular [rad]
 constexpr double kEpipoleRadius = 10.0;  // where the epipolar plane is not sharp any more [px]
 
@@ -32,7 +31,7 @@ struct NormalEquations {
 };
 
 void addPair(const BearingPair& pair, const RelativeMotion& motion, const Matrix3d& R_21,
-             const Eigen::Matrix<double, 3, 2>& directions, double threshold,
+             const Eigen::Matrix<double, 3, 2>& directions, const MotionFitOptions& options,
              NormalEquations* equations) {
   const Vector3d turned = R_21 * pair.first;
   const Vector3d normal = motion.t_21.cross(turned);
@@ -40,20 +39,26 @@ void addPair(const BearingPair& pair, const RelativeMotion& motion, const Matrix
   const double scale =
       1.0 / (pair.angular_resolution * std::sqrt(normal.squaredNorm() + fade * fade));
   const double residual = scale * pair.second.dot(normal);
-  if (std::abs(residual) > threshold) return;
+  const double ratio = residual / options.scale;  // 0 where the scale is infinite
+  // The root of Geman and McClure's weight.
+  const double root_weight = 1.0 / ((1.0 + ratio * ratio) * options.sigma);
   Vector5d J;
   J.head<3>() = scale * turned.cross(pair.second.cross(motion.t_21));
   J.tail<2>() = scale * directions.transpose() * turned.cross(pair.second);
-  equations->add(J / kPixelSigma, residual / kPixelSigma);
+  equations->add(root_weight * J, root_weight * residual);
 }
 
 }  // namespace
 
-double epipolarDistance(const BearingPair& pair, const RelativeMotion& motion) {
-  const Vector3d normal = motion.t_21.cross(motion.R_21 * pair.first);
+double EpipolarMeasure::squaredDistance(const BearingPair& pair) const {
+  const Vector3d normal = t_21_.cross(R_21_ * pair.first);
   const double fade = kEpipoleRadius * pair.angular_resolution;
-  const double sharpness = std::sqrt(normal.squaredNorm() + fade * fade);
-  return std::abs(pair.second.dot(normal)) / (sharpness * pair.angular_resolution);
+  const double off = pair.second.dot(normal) / pair.angular_resolution;
+  return off * off / (normal.squaredNorm() + fade * fade);
+}
+
+double epipolarDistance(const BearingPair& pair, const RelativeMotion& motion) {
+  return std::sqrt(EpipolarMeasure(motion).squaredDistance(pair));
 }
 
 double parallax(const BearingPair& pair, const Eigen::Quaterniond& R_21) {
@@ -74,7 +79,7 @@ void stepMotion(const std::vector<BearingPair>& pairs, const std::vector<std::si
   const Matrix3d R_21 = motion->R_21.toRotationMatrix();
   const Eigen::Matrix<double, 3, 2> directions = tangentBasis(motion->t_21);
   const auto add = [&](const BearingPair& pair) {
-    addPair(pair, *motion, R_21, directions, options.threshold, &equations);
+    addPair(pair, *motion, R_21, directions, options, &equations);
   };
   if (sample.empty()) {
     for (const BearingPair& pair : pairs) add(pair);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "motion_fit.h"
 
@@ -14,22 +13,22 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr std::size_t kFewestPairs = 6;
-constexpr double kLoose = 3.0;             // thresholds, of a motion that is not fitted yet
+constexpr std::size_t kSampleSize = 5;     // pairs that determine a motion
+constexpr std::size_t kCandidates = 5;     // motions of samples that are fitted to all pairs
+constexpr int kFirstSteps = 2;             // of the fit to all pairs, for all candidates
+constexpr int kLastSteps = 4;              // and for the best of them
+constexpr double kFinest = 0.03;           // standard deviation of the best tracks [px]
+constexpr double kScale = 2.0;             // standard deviations where a pair begins to count less
 constexpr double kSigmas = 5.0;            // of good pairs' distances: what is further is wrong
 constexpr double kSigmaOfMedian = 1.4826;  // standard deviation by median, of a normal distribution
 constexpr double kSharpest = 0.3;          // share of the threshold that all pairs have
 constexpr double kNoMeasurement = 0.3;     // standard deviation of a guessed rotation [rad]
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-double truncatedCost(const std::vector<BearingPair>& pairs, const RelativeMotion& motion,
-                     double threshold, double stop_at) {
-  double cost = 0.0;
-  const double limit = threshold * threshold;
-  for (const BearingPair& pair : pairs) {
-    const double distance = epipolarDistance(pair, motion);
-    cost += std::min(distance * distance, limit);
-    if (cost > stop_at) break;
-  }
-  return cost;
+double medianOf(std::vector<double>* values) {
+  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
 }
 
 /// Direction on which the parallaxes of two pairs agree, up to its sign.
@@ -46,6 +45,18 @@ bool directionOfTwo(const BearingPair& a, const BearingPair& b, const Quaternion
 
 }  // namespace
 
+/// Where motions are sought, and how.
+struct OutlierRejection::MotionSearch {
+  Quaterniond R_21;       ///< rotation that is known before
+  double rotation_sigma;  ///< its standard deviation [rad]
+  int steps;              ///< Gauss-Newton steps on each sample
+};
+
+struct OutlierRejection::Candidate {
+  RelativeMotion motion;
+  double cost;
+};
+
 OutlierRejection::OutlierRejection(const OutlierRejectionOptions& options)
     : options_(options), random_(options.seed) {}
 
@@ -58,80 +69,88 @@ void OutlierRejection::drawSample(std::size_t count, std::size_t size) {
   }
 }
 
-RelativeMotion OutlierRejection::searchByTwo(const std::vector<BearingPair>& pairs,
-                                             const Quaterniond& R_21) {
-  RelativeMotion best{R_21, Vector3d::UnitZ()};
-  const double threshold = kLoose * options_.threshold;
-  double best_cost = std::numeric_limits<double>::infinity();
+std::vector<OutlierRejection::Candidate> OutlierRejection::propose(
+    const std::vector<BearingPair>& pairs, const MotionSearch& search) {
+  MotionFitOptions fit;
+  fit.scale = std::numeric_limits<double>::infinity();
+  fit.rotation_sigma = search.rotation_sigma;
+  fit.R_prior = search.R_21;
+  std::vector<Candidate> best;
   for (int i = 0; i < options_.samples; ++i) {
-    drawSample(pairs.size(), 2);
-    RelativeMotion motion{R_21, Vector3d::UnitZ()};
-    if (!directionOfTwo(pairs[sample_[0]], pairs[sample_[1]], R_21, &motion.t_21)) continue;
-    const double cost = truncatedCost(pairs, motion, threshold, best_cost);
-    if (cost >= best_cost) continue;
-    best = motion;
-    best_cost = cost;
+    drawSample(pairs.size(), kSampleSize);
+    RelativeMotion motion{search.R_21, Vector3d::UnitZ()};
+    if (!directionOfTwo(pairs[sample_[0]], pairs[sample_[1]], search.R_21, &motion.t_21)) continue;
+    for (int step = 0; step < search.steps; ++step) stepMotion(pairs, sample_, fit, &motion);
+    const double limit = best.size() < kCandidates ? kNoLimit : best.back().cost;
+    const double cost = medianDistance(pairs, motion, limit);
+    if (cost >= limit) continue;
+    if (best.size() == kCandidates) best.pop_back();
+    const auto after = std::find_if(best.begin(), best.end(),
+                                    [cost](const Candidate& other) { return other.cost > cost; });
+    best.insert(after, {motion, cost});
   }
   return best;
 }
 
-RelativeMotion OutlierRejection::searchByFive(const std::vector<BearingPair>& pairs,
-                                              const Quaterniond& R_21) {
-  const Quaterniond R_fitted = fitRotation(pairs, R_21);
-  RelativeMotion best = searchByTwo(pairs, R_fitted);
-  double best_cost =
-      truncatedCost(pairs, best, options_.threshold, std::numeric_limits<double>::infinity());
-  MotionFitOptions fit;
-  fit.threshold = std::numeric_limits<double>::infinity();
-  fit.rotation_sigma = kNoMeasurement;
-  fit.R_prior = R_fitted;
-  for (int i = 0; i < options_.samples; ++i) {
-    drawSample(pairs.size(), 5);
-    RelativeMotion motion{R_fitted, Vector3d::UnitZ()};
-    if (!directionOfTwo(pairs[sample_[0]], pairs[sample_[1]], R_fitted, &motion.t_21)) continue;
-    for (int step = 0; step < 5; ++step) stepMotion(pairs, sample_, fit, &motion);
-    const double cost = truncatedCost(pairs, motion, options_.threshold, best_cost);
+RelativeMotion OutlierRejection::search(const std::vector<BearingPair>& pairs,
+                                        const MotionSearch& search) {
+  RelativeMotion best{search.R_21, Vector3d::UnitZ()};
+  double best_cost = kNoLimit;
+  for (const Candidate& candidate : propose(pairs, search)) {
+    const RelativeMotion motion = polish(pairs, candidate.motion, search, kFirstSteps);
+    const double cost = medianDistance(pairs, motion, best_cost);
     if (cost >= best_cost) continue;
     best = motion;
     best_cost = cost;
   }
+  best = polish(pairs, best, search, kLastSteps);
+  faceForward(pairs, options_.threshold, &best);
   return best;
 }
 
 RelativeMotion OutlierRejection::polish(const std::vector<BearingPair>& pairs,
-                                        RelativeMotion motion, double rotation_sigma) const {
+                                        RelativeMotion motion, const MotionSearch& search,
+                                        int steps) {
   MotionFitOptions fit;
-  fit.rotation_sigma = rotation_sigma;
-  fit.R_prior = motion.R_21;
-  // From loose to sharp: a rotation that is off by some pixels must not shut good pairs out.
-  for (const double factor : {kLoose, kLoose, 2.0, 1.5, 1.0, 1.0}) {
-    fit.threshold = factor * options_.threshold;
+  fit.rotation_sigma = search.rotation_sigma;
+  fit.R_prior = search.R_21;
+  for (int step = 0; step < steps; ++step) {
+    // As wide as the pairs lie now: a rotation that is off must not shut good pairs out.
+    const double sigma = kSigmaOfMedian * medianDistance(pairs, motion, kNoLimit);
+    fit.sigma = std::clamp(sigma, kFinest, options_.threshold);
+    fit.scale = kScale * fit.sigma;
     stepMotion(pairs, {}, fit, &motion);
   }
-  faceForward(pairs, options_.threshold, &motion);
   return motion;
 }
 
-double OutlierRejection::sharpThreshold(std::vector<double> distances) const {
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  const double sigma = kSigmaOfMedian * *middle;
-  return std::clamp(kSigmas * sigma, kSharpest * options_.threshold, options_.threshold);
+double OutlierRejection::medianDistance(const std::vector<BearingPair>& pairs,
+                                        const RelativeMotion& motion, double limit) {
+  const EpipolarMeasure measure(motion);
+  const double limit_squared = limit * limit;
+  std::size_t beyond = 0;
+  squares_.clear();
+  for (const BearingPair& pair : pairs) {
+    squares_.push_back(measure.squaredDistance(pair));
+    if (squares_.back() < limit_squared) continue;
+    // The median is among them: most motions are not worth more than that.
+    if (2 * ++beyond > pairs.size()) return kNoLimit;
+  }
+  return std::sqrt(medianOf(&squares_));
 }
 
 RejectionResult OutlierRejection::classify(const std::vector<BearingPair>& pairs,
-                                           const RelativeMotion& motion) const {
+                                           const RelativeMotion& motion) {
   RejectionResult result;
   result.motion = motion;
+  const double sigma = kSigmaOfMedian * medianDistance(pairs, motion, kNoLimit);
+  result.threshold =
+      std::clamp(kSigmas * sigma, kSharpest * options_.threshold, options_.threshold);
   result.is_inlier.reserve(pairs.size());
-  std::vector<double> distances;
-  distances.reserve(pairs.size());
-  for (const BearingPair& pair : pairs) distances.push_back(epipolarDistance(pair, motion));
-  result.threshold = sharpThreshold(distances);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const bool in_plane = distances[i] <= result.threshold;
+  for (const BearingPair& pair : pairs) {
+    const bool in_plane = epipolarDistance(pair, motion) <= result.threshold;
     // A little more slack: along the plane the error of the rotation adds to that of the track.
-    const bool in_front = displacement(pairs[i], motion) >= -2.0 * options_.threshold;
+    const bool in_front = displacement(pair, motion) >= -2.0 * options_.threshold;
     const bool is_inlier = in_plane && in_front;
     result.is_inlier.push_back(is_inlier ? 1 : 0);
     result.inliers += is_inlier ? 1 : 0;
@@ -149,15 +168,15 @@ RejectionResult OutlierRejection::reject(const std::vector<BearingPair>& pairs,
     all.motion.R_21 = R_21_measured.value_or(R_21_guess);
     return all;
   }
-  std::optional<RejectionResult> by_two;
+  std::optional<RejectionResult> by_gyroscope;
   if (R_21_measured) {
-    by_two =
-        classify(pairs, polish(pairs, searchByTwo(pairs, *R_21_measured), options_.rotation_sigma));
-    if (2 * by_two->inliers >= static_cast<int>(pairs.size())) return *by_two;
+    const MotionSearch near_measured{*R_21_measured, options_.rotation_sigma, 2};
+    by_gyroscope = classify(pairs, search(pairs, near_measured));
+    if (2 * by_gyroscope->inliers >= static_cast<int>(pairs.size())) return *by_gyroscope;
   }
-  const RelativeMotion found = searchByFive(pairs, R_21_measured.value_or(R_21_guess));
-  RejectionResult by_five = classify(pairs, polish(pairs, found, kNoMeasurement));
-  return by_two && by_two->inliers >= by_five.inliers ? *by_two : by_five;
+  const Quaterniond R_fitted = fitRotation(pairs, R_21_measured.value_or(R_21_guess));
+  RejectionResult by_images = classify(pairs, search(pairs, {R_fitted, kNoMeasurement, 5}));
+  return by_gyroscope && by_gyroscope->inliers >= by_images.inliers ? *by_gyroscope : by_images;
 }
 
 }  // namespace vins

@@ -1,5 +1,7 @@
 #include "feature_tracker/corner_grid.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "camera_model/testing/example_cameras.h"
@@ -81,6 +83,28 @@ TEST(CornerGrid, FindsTheCornerOfASquareToAPixel) {
     EXPECT_LT(dx, 3.0F);
     EXPECT_LT(dy, 3.0F);
   }
+}
+
+TEST(CornerGrid, LeavesBlankPlacesAloneForThreeImages) {
+  // The right half is blank at first.
+  const ImagePyramid full = texturedPyramid();
+  cv::Mat half_blank = full.image().clone();
+  half_blank(cv::Rect(376, 0, 376, 480)).setTo(100);
+  ImagePyramid before;
+  before.build(half_blank, {});
+  CornerGrid grid(kSize, {80, 30.0, 8, 2.5}, {});
+  std::vector<cv::Point2f> pixels = pixelsOf(grid.detect(before.gradients(), {}));
+  ASSERT_GE(pixels.size(), 40U);  // half of those wanted: below that, every cell is searched
+  ASSERT_LT(pixels.size(), 80U);
+  // Cells on the border between the halves are not blank: they are up to 94 px wide.
+  const auto is_right = [](const cv::Point2f& pixel) { return pixel.x > 376.0F + 94.0F; };
+  for (int image = 1; image <= 4; ++image) {
+    const auto more = pixelsOf(grid.detect(full.gradients(), pixels));
+    EXPECT_EQ(std::any_of(more.begin(), more.end(), is_right), image == 4) << image;
+    if (image < 4) continue;
+    pixels.insert(pixels.end(), more.begin(), more.end());
+  }
+  EXPECT_GE(smallestDistance(pixels), 30.0);
 }
 
 TEST(CornerGrid, FindsNothingWhereThereIsNothing) {

@@ -144,6 +144,54 @@ TEST(FeatureTracker, StartsAgainWhenTimeJumps) {
   EXPECT_TRUE(gap.restarted);
 }
 
+/// An image as a camera has it at dusk: dark, and all grey values within a few.
+cv::Mat atDusk(const cv::Mat& image) {
+  cv::Mat dark;
+  image.convertTo(dark, CV_8U, 0.2, 0.0);
+  return dark;
+}
+
+TEST(FeatureTracker, EqualizesWhatIsTooDullToTrack) {
+  FeatureTrackerOptions options;
+  FeatureTracker plain = makeTracker(options);
+  options.equalization = Equalization::kWhereDull;
+  FeatureTracker equalizing = makeTracker(options);
+  FeatureTrackerResult by_plain, by_equalizing;
+  for (int i = 0; i < 12; ++i) {
+    const cv::Mat image = atDusk(swayingImages()[i]);
+    by_plain = plain.track({image}, kPeriod * (i + 1), {});
+    by_equalizing = equalizing.track({image}, kPeriod * (i + 1), {});
+    EXPECT_FALSE(by_plain.statistics.equalized);
+    EXPECT_TRUE(by_equalizing.statistics.equalized);
+  }
+  // Most of the cells have a track again, and most tracks last; without, there are hardly any.
+  EXPECT_GT(by_equalizing.frame->observations.size(), 90U);
+  EXPECT_GT(by_equalizing.statistics.inliers, 80);
+  EXPECT_LT(by_plain.frame->observations.size(), by_equalizing.frame->observations.size() / 2);
+}
+
+TEST(FeatureTracker, KeepsItsTracksWhereEqualizingBeginsAndEnds) {
+  FeatureTrackerOptions options;
+  options.equalization = Equalization::kWhereDull;
+  FeatureTracker tracker = makeTracker(options);
+  bool was_equalized = false;
+  int changes = 0;
+  for (int i = 0; i < 30; ++i) {
+    // Mist comes and goes again: contrasts fall from twice the images' own to half of it.
+    const double contrast = std::exp2(std::cos(2.0 * M_PI * i / 30.0));
+    cv::Mat image;
+    swayingImages()[i].convertTo(image, CV_8U, contrast, 120.0 * (1.0 - contrast));
+    const auto result = tracker.track({image}, kPeriod * (i + 1), {});
+    if (result.statistics.equalized != was_equalized) ++changes;
+    was_equalized = result.statistics.equalized;
+    // Both images of a pair are treated alike, so a change costs no more than other images do.
+    if (i > 0) {
+      EXPECT_GT(result.statistics.inliers, 0.8 * result.statistics.before) << i;
+    }
+  }
+  EXPECT_EQ(changes, 2);
+}
+
 TEST(FeatureTracker, ReportsABlackoutAndItsEnd) {
   FeatureTracker tracker = makeTracker();
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(step(&tracker, i).events.empty());

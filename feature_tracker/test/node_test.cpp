@@ -1,4 +1,4 @@
-// The node, seen from outside: images in, feature frames out.
+// The node or the nodelet, seen from outside: images in, feature frames out.
 #include <functional>
 #include <map>
 

@@ -1,5 +1,7 @@
 #include "feature_tracker/outlier_rejection.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "vins_core/so3.h"
@@ -78,6 +80,37 @@ TEST(OutlierRejection, IsNotPoisonedByTheGyroscopesBias) {
   // 0.1 rad/s during 50 ms: 2.3 px.
   const Quaterniond biased = so3::exp({0.003, -0.004, 0.001}) * scene.R_21;
   expectGoodJudgement(scene, OutlierRejection({}).reject(scene.pairs(), biased));
+}
+
+/// The last `movers` pairs see something that moves as one, and not with the camera.
+std::vector<BearingPair> pairsAmongMovers(const Scene& scene, int movers, const Vector3d& motion) {
+  std::vector<BearingPair> pairs = scene.pairs();
+  Scene moved = scene;
+  moved.p_21 += motion;
+  const std::vector<BearingPair> theirs = moved.pairs();
+  std::copy(theirs.end() - movers, theirs.end(), pairs.end() - movers);
+  return pairs;
+}
+
+TEST(OutlierRejection, IsNotBentByOneThatMovesWhereTheCameraHardlyDoes) {
+  Scene scene;
+  scene.noise = 0.05;
+  scene.outliers = 0;
+  scene.p_21 = {0.02, -0.005, 0.01};  // 1 to 9 pixels of parallax, 2 for most
+  constexpr int kMovers = 40;
+  // A motion between the camera's and this one explains all pairs within a pixel.
+  const auto pairs = pairsAmongMovers(scene, kMovers, {0.08, 0.01, 0.0});
+  const Quaterniond biased = so3::exp({0.003, -0.003, 0.001}) * scene.R_21;
+  for (const std::optional<Quaterniond>& measured :
+       {std::optional<Quaterniond>(scene.R_21), std::optional<Quaterniond>(biased),
+        std::optional<Quaterniond>()}) {
+    const RejectionResult result = OutlierRejection({}).reject(pairs, measured);
+    // The threshold is 5 standard deviations or more.
+    EXPECT_GE(countInliers(result, 0, 150 - kMovers), 150 - kMovers - 1);
+    // Some of them move along their epipolar planes as good pairs do.
+    EXPECT_LE(countInliers(result, 150 - kMovers, 150), kMovers / 4);
+    EXPECT_LT(result.motion.R_21.angularDistance(scene.R_21), 0.5 * kPixel);
+  }
 }
 
 TEST(OutlierRejection, KeepsGoodTracksWhereNothingHasParallax) {

@@ -14,6 +14,7 @@ struct Sequence {
   const char* trajectory;
   const char* camera_file;  // empty: EuRoC's
   int moving_objects;
+  double start = 4.0;  // [s]
 };
 
 SimulatedRecording recordingOf(const Sequence& sequence, double duration = 3.0) {
@@ -21,7 +22,7 @@ SimulatedRecording recordingOf(const Sequence& sequence, double duration = 3.0) 
   options.trajectory = sequence.trajectory;
   options.camera_file = sequence.camera_file;
   options.moving_objects = sequence.moving_objects;
-  options.start = 4.0;
+  options.start = sequence.start;
   options.duration = duration;
   return simulateRecording(options);
 }
@@ -57,6 +58,12 @@ TEST(FeatureTrackerTruth, HallLoopWithoutGyroscope) {
 }
 
 TEST(FeatureTrackerTruth, FastFlight) { expectGoodTracks(measure({"fast", "fast", "", 0})); }
+
+TEST(FeatureTrackerTruth, FastFlightAmongMovingObjects) {
+  // Objects on up to a quarter of the image, while the camera itself nearly stands for a moment.
+  expectGoodTracks(measure({"fast, moving objects", "fast", "", 3}));
+  expectGoodTracks(measure({"fast, moving objects, later", "fast", "", 3, 25.0}));
+}
 
 TEST(FeatureTrackerTruth, Fisheye) {
   const std::string camera = "../config/simulation/fisheye_camera.yaml";

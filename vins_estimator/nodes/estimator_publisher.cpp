@@ -22,9 +22,8 @@ constexpr std::size_t kMaxHistoryPoints = 100000;
 
 }  // namespace
 
-EstimatorPublisher::EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames,
-                                       const EstimatorOptions& options)
-    : frames_(frames), T_bc_(options.T_bc), td_(options.td) {
+EstimatorPublisher::EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames)
+    : frames_(frames) {
   odometry_ = node.advertise<nav_msgs::Odometry>("odometry", 100);
   propagated_ = node.advertise<nav_msgs::Odometry>("imu_propagate", 1000);
   path_topic_ = node.advertise<nav_msgs::Path>("path", 10);
@@ -51,9 +50,10 @@ void EstimatorPublisher::publish(const EstimatorResult& result) {
   for (const Event& event : result.events) events_.publish(vins_msgs::toMsg(event));
   if (!result.odometry) return;
   publishOdometry(*result.odometry);
-  publishCamera(*result.odometry);
+  publishCamera(result);
+  publishRig(result);
   publishBias(*result.odometry);
-  publishTransforms(*result.odometry);
+  publishTransforms(result);
   publishWindow(result);
   publishClouds(result);
   publishKeyframes(result);
@@ -81,26 +81,31 @@ void EstimatorPublisher::publishOdometry(const Odometry& odometry) {
   if (path_topic_.getNumSubscribers() > 0) path_topic_.publish(path_);
 }
 
-void EstimatorPublisher::publishCamera(const Odometry& odometry) {
+void EstimatorPublisher::publishCamera(const EstimatorResult& result) {
   nav_msgs::Odometry camera;
-  camera.header.stamp = vins_msgs::toRosTime(odometry.stamp);
+  camera.header.stamp = vins_msgs::toRosTime(result.stamp);
   camera.header.frame_id = frames_.odom;
   camera.child_frame_id = frames_.camera;
-  camera.pose.pose = vins_msgs::toMsg(odometry.state.T_wb * T_bc_);
+  camera.pose.pose = vins_msgs::toMsg(result.odometry->state.T_wb * result.rig.T_bc);
   camera_.publish(camera);
   visualization_msgs::MarkerArray frustum;
   frustum.markers.push_back(cameraFrustum(0.4));
   frustum.markers.front().header = camera.header;
   frustum.markers.front().pose = camera.pose.pose;
   camera_visual_.publish(frustum);
+}
+
+void EstimatorPublisher::publishRig(const EstimatorResult& result) {
   nav_msgs::Odometry extrinsic;
-  extrinsic.header.stamp = camera.header.stamp;
+  extrinsic.header.stamp = vins_msgs::toRosTime(result.stamp);
   extrinsic.header.frame_id = frames_.body;
   extrinsic.child_frame_id = frames_.camera;
-  extrinsic.pose.pose = vins_msgs::toMsg(T_bc_);
+  extrinsic.pose.pose = vins_msgs::toMsg(result.rig.T_bc);
+  const Eigen::Matrix<double, 6, 6> covariance = result.rig_covariance.topLeftCorner<6, 6>();
+  std::copy_n(covariance.data(), 36, extrinsic.pose.covariance.begin());
   extrinsic_.publish(extrinsic);
   std_msgs::Float64 td;
-  td.data = td_;
+  td.data = result.rig.td;
   time_offset_.publish(td);
 }
 
@@ -116,19 +121,19 @@ void EstimatorPublisher::publishBias(const Odometry& odometry) {
   bias_.publish(message);
 }
 
-void EstimatorPublisher::publishTransforms(const Odometry& odometry) {
+void EstimatorPublisher::publishTransforms(const EstimatorResult& result) {
   const auto transform = [&](const std::string& parent, const std::string& child,
                              const Pose& pose) {
     geometry_msgs::TransformStamped message;
-    message.header.stamp = vins_msgs::toRosTime(odometry.stamp);
+    message.header.stamp = vins_msgs::toRosTime(result.stamp);
     message.header.frame_id = parent;
     message.child_frame_id = child;
     message.transform.translation = vins_msgs::toMsg(pose.position);
     message.transform.rotation = vins_msgs::toMsg(pose).orientation;
     return message;
   };
-  transforms_.sendTransform({transform(frames_.odom, frames_.body, odometry.state.T_wb),
-                             transform(frames_.body, frames_.camera, T_bc_)});
+  transforms_.sendTransform({transform(frames_.odom, frames_.body, result.odometry->state.T_wb),
+                             transform(frames_.body, frames_.camera, result.rig.T_bc)});
 }
 
 void EstimatorPublisher::publishWindow(const EstimatorResult& result) {

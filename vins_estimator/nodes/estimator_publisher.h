@@ -23,9 +23,7 @@ struct EstimatorFrames {
 /// names that VINS-Mono's users know.
 class EstimatorPublisher {
  public:
-  /// `extrinsic_deviation` is not known yet: the extrinsic goes out without covariance.
-  EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames,
-                     const EstimatorOptions& options);
+  EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames);
 
   /// All that one frame has brought.
   void publish(const EstimatorResult& result);
@@ -38,16 +36,15 @@ class EstimatorPublisher {
 
  private:
   void publishOdometry(const Odometry& odometry);
-  void publishCamera(const Odometry& odometry);
+  void publishCamera(const EstimatorResult& result);
+  void publishRig(const EstimatorResult& result);
   void publishBias(const Odometry& odometry);
-  void publishTransforms(const Odometry& odometry);
+  void publishTransforms(const EstimatorResult& result);
   void publishWindow(const EstimatorResult& result);
   void publishClouds(const EstimatorResult& result);
   void publishKeyframes(const EstimatorResult& result);
 
   EstimatorFrames frames_;
-  Pose T_bc_;
-  double td_;
   nav_msgs::Path path_;
   sensor_msgs::PointCloud2 history_;
   ros::Publisher odometry_, propagated_, path_topic_, cloud_, history_topic_, key_poses_, camera_,

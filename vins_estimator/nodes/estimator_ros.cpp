@@ -1,5 +1,6 @@
 #include "estimator_ros.h"
 
+#include <cmath>
 #include <utility>
 
 #include "vins_core/input_error.h"
@@ -61,7 +62,7 @@ auto tryFromMsg(const Message& message) -> std::optional<decltype(vins_msgs::fro
 EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node)
     : options_(loadOptions(loadConfiguration(private_node))),
       estimator_(options_),
-      publisher_(private_node, framesOf(private_node), options_),
+      publisher_(private_node, framesOf(private_node)),
       propagator_(options_.imu),
       diagnostics_(node, private_node) {
   const Parameters parameters = loadConfiguration(private_node);
@@ -170,6 +171,7 @@ void EstimatorRos::handle(Input* input) {
     estimator_.addFrame(*input->frame);
     const std::lock_guard<std::mutex> lock(mutex_);
     --frames_waiting_;
+    estimator_.setBacklog(static_cast<int>(frames_waiting_));
   }
 }
 
@@ -180,7 +182,7 @@ void EstimatorRos::handleResults() {
 void EstimatorRos::handle(const EstimatorResult& result) {
   for (const Event& event : result.events) log(event);
   if (result.odometry) {
-    const Stamp solved = result.odometry->stamp + toNanoseconds(options_.td);
+    const Stamp solved = result.odometry->stamp + toNanoseconds(result.rig.td);
     const std::lock_guard<std::mutex> lock(propagator_mutex_);
     propagator_.setState(solved, result.odometry->state, result.odometry->covariance);
   }
@@ -216,6 +218,9 @@ void EstimatorRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("state", toString(latest_.status));
   status.add("features", latest_.statistics.features);
   status.add("landmarks", latest_.statistics.landmarks);
+  status.add("motion-only adjustment", latest_.statistics.motion_only);
+  status.add("time offset [s]", latest_.rig.td);
+  status.add("time offset, deviation [s]", std::sqrt(latest_.rig_covariance(6, 6)));
   status.add("solve time [ms]", 1e3 * latest_.statistics.solve_seconds);
   status.add("marginalization time [ms]", 1e3 * latest_.statistics.marginalize_seconds);
   status.add("frames waiting", frames_waiting_);

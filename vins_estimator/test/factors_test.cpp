@@ -144,15 +144,6 @@ class BearingFactorTest : public ::testing::Test {
   Vector3d exact_bearing_;
 };
 
-TEST_F(BearingFactorTest, BasisIsOrthonormalAndTangent) {
-  for (int i = 0; i < 50; ++i) {
-    const Vector3d b = random_.normal3().normalized();
-    const auto basis = tangentBasis(b);
-    EXPECT_LT((basis.transpose() * basis - Eigen::Matrix2d::Identity()).norm(), 1e-14);
-    EXPECT_LT((basis.transpose() * b).norm(), 1e-14);
-  }
-}
-
 TEST_F(BearingFactorTest, ResidualIsZeroAtTheTruthAndCountsInDeviations) {
   measured_.bearing = exact_bearing_;
   measured_.basis = tangentBasis(exact_bearing_);

@@ -56,14 +56,19 @@ struct RejectionResult {
 /// Tells tracks of the still world from wrong matches and moving objects, on unit bearings: cameras
 /// of any field of view are served alike.
 ///
-/// With a measured rotation two pairs give the direction of the translation (D. Scaramuzza's and
-/// L. Kneip's two-point methods); without one, or where it explains less than half of the pairs,
-/// samples of five pairs are fitted by Gauss-Newton steps on rotation and direction (T. Botterill,
-/// S. Mills, R. Green, "Fast RANSAC hypothesis generation for essential matrix estimation", DICTA
-/// 2011). The best motion, by truncated squares (P. Torr, A. Zisserman, "MLESAC", 2000), is fitted
-/// to its inliers, the rotation too: the gyroscope's bias would else cost good tracks. Where
-/// nothing has parallax the direction means nothing, and pairs are judged by the rotation, which
-/// every direction is consistent with.
+/// Random samples of five pairs are fitted by Gauss-Newton steps on rotation and direction (T.
+/// Botterill, S. Mills, R. Green, "Fast RANSAC hypothesis generation for essential matrix
+/// estimation", DICTA 2011), which begin at the measured rotation and are bound to it as tightly as
+/// it is known; without one, or where that explains less than half of the pairs, at a rotation
+/// fitted to all pairs. The best are fitted to all pairs robustly, the rotation too: the
+/// gyroscope's bias would else cost good tracks.
+///
+/// The motion whose median distance is the least wins (P. Rousseeuw, "Least median of squares
+/// regression", 1984): the one that more than half of the pairs agree on as closely as tracks can.
+/// No fixed threshold would do. Where the camera moves by centimetres, the still world's parallax
+/// is less than a pixel, and a motion that is bent towards an object's explains both within that;
+/// the tracks' own noise is a tenth of it. Where nothing has parallax the direction means nothing,
+/// and pairs are judged by the rotation, which every direction is consistent with.
 class OutlierRejection {
  public:
   explicit OutlierRejection(const OutlierRejectionOptions& options);
@@ -76,19 +81,23 @@ class OutlierRejection {
                          const Eigen::Quaterniond& R_21_guess = Eigen::Quaterniond::Identity());
 
  private:
-  RelativeMotion searchByTwo(const std::vector<BearingPair>& pairs, const Eigen::Quaterniond& R_21);
-  RelativeMotion searchByFive(const std::vector<BearingPair>& pairs,
-                              const Eigen::Quaterniond& R_21);
+  struct MotionSearch;
+  struct Candidate;
+
+  std::vector<Candidate> propose(const std::vector<BearingPair>& pairs, const MotionSearch& search);
+  RelativeMotion search(const std::vector<BearingPair>& pairs, const MotionSearch& search);
   RelativeMotion polish(const std::vector<BearingPair>& pairs, RelativeMotion motion,
-                        double rotation_sigma) const;
-  double sharpThreshold(std::vector<double> distances) const;
-  RejectionResult classify(const std::vector<BearingPair>& pairs,
-                           const RelativeMotion& motion) const;
+                        const MotionSearch& search, int steps);
+  double medianDistance(const std::vector<BearingPair>& pairs, const RelativeMotion& motion,
+                        double limit);
+  RejectionResult classify(const std::vector<BearingPair>& pairs, const RelativeMotion& motion);
   void drawSample(std::size_t count, std::size_t size);
 
   OutlierRejectionOptions options_;
   std::mt19937_64 random_;
+  // Kept from call to call, so that little is allocated for an image.
   std::vector<std::size_t> sample_;
+  std::vector<double> squares_;
 };
 
 }  // namespace vins

@@ -40,16 +40,6 @@ void writePoseJacobian(const Matrix26d& J, double* jacobian) {
 
 }  // namespace
 
-Eigen::Matrix<double, 3, 2> tangentBasis(const Vector3d& bearing) {
-  // The axis that is most nearly orthogonal to the bearing.
-  int axis = 0;
-  bearing.cwiseAbs().minCoeff(&axis);
-  Eigen::Matrix<double, 3, 2> basis;
-  basis.col(0) = bearing.cross(Vector3d::Unit(axis)).normalized();
-  basis.col(1) = bearing.cross(basis.col(0));
-  return basis;
-}
-
 Vector3d anchoredDirection(const LandmarkAnchor& anchor, const LandmarkParameters& landmark) {
   return anchor.bearing + anchor.basis * landmark.head<2>();
 }

@@ -4,12 +4,10 @@
 #include <ceres/sized_cost_function.h>
 
 #include "vins_core/pose.h"
+#include "vins_core/tangent_basis.h"
 #include "vins_estimator/inertial/nav_state.h"
 
 namespace vins {
-
-/// Two orthonormal columns that span the tangent plane of the unit sphere at `bearing`.
-Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& bearing);
 
 /// A landmark on the ray of the frame that hosts it (the first that observed it). In the host's
 /// camera it lies at (bearing + basis (u, v)) / rho: rho is the inverse distance [1/m], u and v let
