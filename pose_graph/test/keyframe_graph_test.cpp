@@ -165,6 +165,22 @@ TEST(KeyframeGraph, SequencesJoinedAmongThemselvesMoveTogether) {
   EXPECT_LT(difference(vertex(graph, 25).T_mb, run.truth[5]), kRounding);
 }
 
+TEST(KeyframeGraph, ABetterMeasurementTakesTheFirstOnesPlace) {
+  const SyntheticKeyframes run(8, 20, 0.0, 7);
+  KeyframeGraph graph;
+  run.addTo(&graph);
+  LoopEdge first = run.loop(1, 6);
+  first.T_old_query.position.x() += 0.3;
+  EXPECT_EQ(graph.addLoopEdge(first), LoopOutcome::kAdded);
+  EXPECT_EQ(graph.addLoopEdge(run.loop(2, 7)), LoopOutcome::kAdded);
+  EXPECT_EQ(graph.addLoopEdge(run.loop(1, 6)), LoopOutcome::kReplaced);
+  ASSERT_EQ(graph.loops().size(), 2u);
+  EXPECT_LT(difference(graph.loops()[0].T_old_query, run.loop(1, 6).T_old_query), kRounding);
+  // The same keyframe may be the end of several loops.
+  EXPECT_EQ(graph.addLoopEdge(run.loop(2, 6)), LoopOutcome::kAdded);
+  EXPECT_EQ(graph.loops().size(), 3u);
+}
+
 TEST(KeyframeGraph, RefusesLoopsThatMeanNothing) {
   const SyntheticKeyframes run(6, 20, 0.0, 7);
   KeyframeGraph graph;

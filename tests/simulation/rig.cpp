@@ -83,7 +83,7 @@ constexpr char kLoopAndMap[] = R"(
 # Loop closure and map
 loop_closure: 1
 load_previous_pose_graph: 0
-fast_relocalization: 0
+fast_relocalization: 1
 pose_graph_save_path: "/tmp/vins_output/pose_graph/"
 save_image: 0
 visualize_imu_forward: 0

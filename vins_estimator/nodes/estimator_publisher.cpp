@@ -12,6 +12,7 @@
 #include "vins_msgs/ImuBias.h"
 #include "vins_msgs/Keyframe.h"
 #include "vins_msgs/KeyframePoseUpdate.h"
+#include "vins_msgs/LoopEdge.h"
 #include "vins_msgs/conversions.h"
 
 namespace vins {
@@ -34,6 +35,7 @@ EstimatorPublisher::EstimatorPublisher(ros::NodeHandle node, const EstimatorFram
   camera_visual_ = node.advertise<visualization_msgs::MarkerArray>("camera_pose_visual", 10);
   keyframe_ = node.advertise<vins_msgs::Keyframe>("keyframe", 100);
   left_ = node.advertise<vins_msgs::KeyframePoseUpdate>("keyframe_pose_update", 100);
+  loop_edge_ = node.advertise<vins_msgs::LoopEdge>("loop_edge", 100);
   extrinsic_ = node.advertise<nav_msgs::Odometry>("extrinsic", 10);
   time_offset_ = node.advertise<std_msgs::Float64>("time_offset", 10);
   bias_ = node.advertise<vins_msgs::ImuBias>("imu_bias", 10);
@@ -57,6 +59,7 @@ void EstimatorPublisher::publish(const EstimatorResult& result) {
   publishWindow(result);
   publishClouds(result);
   publishKeyframes(result);
+  publishLoopEdges(result);
 }
 
 void EstimatorPublisher::publish(const PropagatedState& state) {
@@ -178,6 +181,10 @@ void EstimatorPublisher::publishKeyframes(const EstimatorResult& result) {
     message.header.frame_id = frames_.odom;
     left_.publish(message);
   }
+}
+
+void EstimatorPublisher::publishLoopEdges(const EstimatorResult& result) {
+  for (const LoopEdge& edge : result.loop_edges) loop_edge_.publish(vins_msgs::toMsg(edge));
 }
 
 }  // namespace vins

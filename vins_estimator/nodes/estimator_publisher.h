@@ -43,12 +43,13 @@ class EstimatorPublisher {
   void publishWindow(const EstimatorResult& result);
   void publishClouds(const EstimatorResult& result);
   void publishKeyframes(const EstimatorResult& result);
+  void publishLoopEdges(const EstimatorResult& result);
 
   EstimatorFrames frames_;
   nav_msgs::Path path_;
   sensor_msgs::PointCloud2 history_;
   ros::Publisher odometry_, propagated_, path_topic_, cloud_, history_topic_, key_poses_, camera_,
-      camera_visual_, keyframe_, left_, extrinsic_, time_offset_, bias_, events_;
+      camera_visual_, keyframe_, left_, loop_edge_, extrinsic_, time_offset_, bias_, events_;
   tf2_ros::TransformBroadcaster transforms_;
 };
 

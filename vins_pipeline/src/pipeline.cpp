@@ -9,18 +9,29 @@ namespace vins {
 namespace {
 
 constexpr Stamp kJump = 1'000'000'000;  ///< stamps that fall by more begin a new run [ns]
+/// Images kept for keyframes to come: more than a window, from which the first keyframes are.
+constexpr std::size_t kRecentImages = 30;
 
 /// Keys that other programs read from the same file: known, and of no meaning here.
 void knowKeysOfOthers(const Parameters& parameters) {
-  for (const char* key :
-       {"output_path", "loop_closure", "load_previous_pose_graph", "fast_relocalization",
-        "pose_graph_save_path", "save_image", "visualize_imu_forward", "visualize_camera_size"}) {
+  for (const char* key : {"output_path", "visualize_imu_forward", "visualize_camera_size"}) {
     parameters.textOr(key, "");
   }
 }
 
 void append(std::vector<Event>* all, const std::vector<Event>& events) {
   all->insert(all->end(), events.begin(), events.end());
+}
+
+std::unique_ptr<PoseGraph> makePoseGraph(const PipelineOptions& options) {
+  if (!options.loops.is_on || !options.places.vocabulary) return nullptr;
+  return std::make_unique<PoseGraph>(options.loops.options, options.cameras.front(),
+                                     options.places);
+}
+
+void add(const Duration& more, Duration* sum) {
+  sum->wall += more.wall;
+  sum->cpu += more.cpu;
 }
 
 /// A part of a stage, where it has worked at all.
@@ -39,6 +50,7 @@ PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::st
   options.mask = readMaskFile(options.tracker.mask_file, options.cameras[0]->imageSize());
   options.imu_topic = parameters.textOr("imu_topic", options.imu_topic);
   options.image_topics[0] = parameters.textOr("image_topic", options.image_topics[0]);
+  options.loops = readPoseGraphConfiguration(parameters);
   knowKeysOfOthers(parameters);
   if (warnings != nullptr) *warnings = parameters.warnings();
   return options;
@@ -47,6 +59,9 @@ PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::st
 Pipeline::Pipeline(const PipelineOptions& options)
     : tracker_(options.cameras, {options.estimator.T_bc}, options.tracker, options.mask),
       estimator_(options.estimator),
+      pose_graph_(makePoseGraph(options)),
+      refines_loops_(options.loops.refines_in_window),
+      recent_images_(kRecentImages),
       offset_(toNanoseconds(options.estimator.td)) {}
 
 void Pipeline::addImu(const ImuSample& sample) {
@@ -98,21 +113,56 @@ void Pipeline::track(const WaitingImage& image, PipelineResult* result) {
   if (!tracked.frame) return;
   result->features = static_cast<int>(tracked.frame->observations.size());
   estimator_.addFrame(*tracked.frame);
+  if (pose_graph_) recent_images_.add(image.stamp, image.image);
 }
 
 void Pipeline::estimate(PipelineResult* result) {
-  const StopWatch watch;
-  while (auto estimate = estimator_.process()) {
+  Duration estimating, closing;
+  while (true) {
+    const StopWatch watch;
+    std::optional<EstimatorResult> estimate = estimator_.process();
+    add(watch.elapsed(), &estimating);
+    if (!estimate) break;
     append(&result->events, estimate->events);
+    if (pose_graph_) {
+      const StopWatch loop_watch;
+      closeLoops(*estimate, result);
+      add(loop_watch.elapsed(), &closing);
+    }
     result->estimates.push_back(std::move(*estimate));
   }
   if (result->estimates.empty()) return;
-  result->durations.emplace_back("estimator", watch.elapsed());
+  result->durations.emplace_back("estimator", estimating);
   for (const EstimatorResult& estimate : result->estimates) {
     const EstimatorStatistics& s = estimate.statistics;
     addPart("estimator/solve", s.solve_seconds, result);
     addPart("estimator/marginalize", s.marginalize_seconds, result);
   }
+  if (pose_graph_) result->durations.emplace_back("pose_graph", closing);
+}
+
+void Pipeline::closeLoops(const EstimatorResult& estimate, PipelineResult* result) {
+  for (const LoopEdge& edge : estimate.loop_edges) {
+    const LoopEdgeResult refined = pose_graph_->addLoopEdge(edge);
+    append(&result->events, refined.events);
+    addPart("pose_graph/optimize", refined.optimize_seconds, result);
+  }
+  for (const Keyframe& keyframe : estimate.keyframes) addKeyframe(keyframe, result);
+  for (const KeyframePoseUpdate& update : estimate.left) pose_graph_->update(update);
+  if (!estimate.odometry) return;
+  const Pose T_mw = pose_graph_->drift(estimate.odometry->sequence).value_or(Pose());
+  result->corrected.push_back({estimate.odometry->stamp, T_mw * estimate.odometry->state.T_wb});
+}
+
+void Pipeline::addKeyframe(const Keyframe& keyframe, PipelineResult* result) {
+  const PoseGraphResult added =
+      pose_graph_->addKeyframe(keyframe, recent_images_.find(keyframe.stamp));
+  append(&result->events, added.events);
+  if (added.match && refines_loops_) estimator_.addLoopMatch(*added.match);
+  addPart("pose_graph/describe", added.search.describe_seconds, result);
+  addPart("pose_graph/query", added.search.query_seconds, result);
+  addPart("pose_graph/verify", added.search.verify_seconds, result);
+  addPart("pose_graph/optimize", added.optimize_seconds, result);
 }
 
 }  // namespace vins

@@ -1,7 +1,6 @@
 #include "place_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <variant>
@@ -9,6 +8,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/progress_bar.h"
 #include "vins_core/so3.h"
+#include "vins_core/wall_clock.h"
 #include "vins_pipeline/bag_recording.h"
 
 namespace vins {
@@ -81,19 +81,6 @@ class Collector {
   Trajectory truth_;
   std::map<Stamp, cv::Mat> images_;
   std::vector<StudiedKeyframe> keyframes_;
-};
-
-class Milliseconds {
- public:
-  double sinceLast() {
-    const auto now = std::chrono::steady_clock::now();
-    const double passed = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return passed;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 bool isExcluded(const std::vector<StudiedKeyframe>& keyframes, std::size_t query, std::size_t old,
@@ -198,24 +185,24 @@ PlaceStudy studyPlaces(const std::vector<StudiedKeyframe>& keyframes, const Came
   PlaceStudy study;
   std::vector<DescribedView> described;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    Milliseconds watch;
+    WallClock clock;
     // The places in the list stand for the ids.
     Keyframe keyframe = keyframes[i].keyframe;
     keyframe.id = static_cast<std::int64_t>(i);
     described.push_back(describer.describe(keyframe, keyframes[i].image));
-    study.describe_ms += watch.sinceLast() / static_cast<double>(keyframes.size());
+    study.describe_ms += 1e3 * clock.lap() / static_cast<double>(keyframes.size());
     study.largest_view = std::max(study.largest_view, described[i].view.memory());
     if (i > 0) {
       study.queries.push_back(
           askDatabase(keyframes, described, i, detector.database(), camera, options));
     }
-    watch.sinceLast();
+    clock.lap();
     const auto candidates = detector.detect(keyframe.id, keyframe.stamp, described[i].bag);
-    study.detect_ms += watch.sinceLast() / static_cast<double>(keyframes.size());
+    study.detect_ms += 1e3 * clock.lap() / static_cast<double>(keyframes.size());
     for (const LoopCandidate& candidate : candidates) {
-      watch.sinceLast();
+      clock.lap();
       study.loops.push_back(compare(keyframes, described, i, candidate, verifier, camera));
-      const double passed = watch.sinceLast();
+      const double passed = 1e3 * clock.lap();
       study.verify_ms += passed;
       study.verify_worst_ms = std::max(study.verify_worst_ms, passed);
       if (study.loops.back().verification.isAccepted()) break;

@@ -1,4 +1,5 @@
-// Visual-inertial odometry on a recording: a bag or an ASL folder in, trajectory and figures out.
+// Visual-inertial odometry and loop closing on a recording: a bag or an ASL folder in, trajectories
+// and figures out.
 
 #include <algorithm>
 #include <csignal>
@@ -15,12 +16,14 @@
 #include <opencv2/core.hpp>
 
 #include "interrupt.h"
+#include "support_files.h"
 #include "trajectory_report.h"
 #include "vins_core/input_error.h"
 #include "vins_core/progress_bar.h"
 #include "vins_core/text_file.h"
 #include "vins_core/trajectory_file.h"
 #include "vins_pipeline/bag_recording.h"
+#include "vins_pipeline/loop_results.h"
 #include "vins_pipeline/pipeline.h"
 #include "vins_pipeline/run_record.h"
 #include "vins_pipeline/run_results.h"
@@ -38,7 +41,10 @@ struct Run {
   std::unique_ptr<vins::Recording> recording;
   vins::RunRecord record;
   vins::RunResults results;
-  vins::Stamp reached = 0;  ///< by arrival [ns]
+  vins::LoopResults loop_results;
+  std::vector<vins::SequencePath> paths;           ///< at the end
+  std::optional<vins::PoseGraphStatistics> graph;  ///< at the end; nothing without loop closing
+  vins::Stamp reached = 0;                         ///< by arrival [ns]
   bool interrupted = false;
 };
 
@@ -52,12 +58,19 @@ vins::RecordingSelection selectionOf(const po::variables_map& values,
   return selection;
 }
 
-vins::PipelineOptions readConfig(const std::string& path) {
+vins::PipelineOptions readConfig(const std::string& path, bool without_loops) {
   std::vector<std::string> warnings;
   vins::PipelineOptions options = vins::readPipelineOptions(path, &warnings);
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
   // The result must not depend on the computer's speed.
   options.estimator.max_solver_time = 0.0;
+  vins::PoseGraphConfiguration& loops = options.loops;
+  loops.options.threaded = false;
+  if (without_loops) loops.is_on = false;
+  if (loops.is_on) {
+    const std::string shipped = loops.files.needsShipped() ? vins::findSupportFiles() : "";
+    options.places = vins::readPlaceModel(loops.files, shipped);
+  }
   return options;
 }
 
@@ -85,13 +98,13 @@ void feed(const vins::Record& message, vins::Pipeline* pipeline, Run* run) {
   }
 }
 
-/// Wall clock and CPU time of both stages together, where both have worked.
+/// Wall clock and CPU time of the odometry's stages together, where both have worked.
 void addFrameDuration(const vins::PipelineResult& result, vins::RunRecord* record) {
   vins::Duration frame;
   int stages = 0;
   for (const auto& [stage, duration] : result.durations) {
     record->addDuration(stage, duration);
-    if (stage.find('/') != std::string::npos) continue;
+    if (stage != "tracker" && stage != "estimator") continue;
     frame.wall += duration.wall;
     frame.cpu += duration.cpu;
     ++stages;
@@ -104,7 +117,17 @@ void work(vins::Pipeline* pipeline, Run* run) {
     addFrameDuration(*result, &run->record);
     run->record.addEvents(result->events);
     run->results.add(*result);
+    run->loop_results.add(*result);
   }
+}
+
+void closeGraph(vins::PoseGraph* graph, Run* run) {
+  if (graph == nullptr) return;
+  const vins::StopWatch watch;
+  graph->finish();
+  run->record.addDuration("pose_graph/finish", watch.elapsed());
+  run->paths = graph->paths();
+  run->graph = graph->statistics();
 }
 
 std::string noteOf(const Run& run) {
@@ -137,6 +160,7 @@ void process(vins::Interrupt* interrupt, Run* run) {
     pipeline.finish();
     work(&pipeline, run);
   }
+  closeGraph(pipeline.poseGraph(), run);
   bar.finish(noteOf(*run));
 }
 
@@ -174,6 +198,11 @@ void writeFiles(const fs::path& folder, const Run& run) {
   };
   write("vio_live.txt", run.results.vioLive());
   write("vins_result_no_loop.csv", run.results.vinsMonoCsv());
+  if (run.graph) {
+    write("loop_live.txt", run.loop_results.live());
+    write("loop_final.txt", run.loop_results.finalPath(run.paths));
+    write("vins_result_loop.csv", vins::LoopResults::vinsMonoCsv(run.paths));
+  }
   write("timing.json", run.record.timingJson(secondsDone(run)));
   write("events.csv", run.record.eventsCsv());
 }
@@ -187,6 +216,14 @@ void printWarnings(const vins::RunResults& results) {
     separator = ", ";
   }
   std::cout << " (see events.csv)\n";
+}
+
+void printLoops(const vins::PoseGraphStatistics& graph) {
+  std::cout << "loops         " << graph.found << " found, " << graph.refined
+            << " of them refined in the window; " << graph.rejected << " candidates rejected\n"
+            << "pose graph    " << graph.keyframes << " keyframes, " << graph.skipped
+            << " left out, " << graph.sequences << " sequences, " << graph.optimizations
+            << " optimizations, " << 1e-6 * static_cast<double>(graph.memory) << " MB\n";
 }
 
 void printSummary(const Run& run, const fs::path& folder) {
@@ -205,12 +242,14 @@ void printSummary(const Run& run, const fs::path& folder) {
             << " frames, path " << results.pathLength() << " m, " << results.resets() << " resets, "
             << (results.isTracking() ? "tracking" : "not tracking")
             << (run.interrupted ? " when interrupted\n" : " at the end\n");
+  if (run.graph) printLoops(*run.graph);
   printWarnings(results);
   std::cout << "speed         " << secondsDone(run) << " s in " << wall
             << " s: " << secondsDone(run) / std::max(wall, 1e-9) << "x real time, peak memory "
             << vins::peakMemoryMb() << " MB\n"
-            << "written to    " << folder.string()
-            << ": vio_live.txt, vins_result_no_loop.csv, timing.json, events.csv\n\n"
+            << "written to    " << folder.string() << ": vio_live.txt, vins_result_no_loop.csv, "
+            << (run.graph ? "loop_live.txt, loop_final.txt, vins_result_loop.csv, " : "")
+            << "timing.json, events.csv\n\n"
             << run.record.timingTable();
 }
 
@@ -226,9 +265,14 @@ void report(const po::variables_map& values, const fs::path& folder, const Run& 
   const std::string truth = prepareTruth(values["ground-truth"].as<std::string>(), folder, run);
   if (truth.empty() || run.results.odometries() == 0) return;
   std::cout << "\n";
-  const bool is_made = vins::makeReport(
-      {truth, (folder / "vio_live.txt").string(), values["align"].as<std::string>(),
-       (folder / "report.html").string(), (folder / "evaluation.json").string()});
+  std::vector<std::string> estimates = {(folder / "vio_live.txt").string()};
+  if (run.graph) {
+    estimates.push_back((folder / "loop_live.txt").string());
+    estimates.push_back((folder / "loop_final.txt").string());
+  }
+  const bool is_made =
+      vins::makeReport({truth, estimates, values["align"].as<std::string>(),
+                        (folder / "report.html").string(), (folder / "evaluation.json").string()});
   if (is_made) std::cout << "report        " << (folder / "report.html").string() << "\n";
 }
 
@@ -244,7 +288,7 @@ int runBag(const po::variables_map& values) {
   // One thread: the same bytes everywhere, and the CPU time of the work itself.
   cv::setNumThreads(1);
   Run run;
-  run.options = readConfig(values["config"].as<std::string>());
+  run.options = readConfig(values["config"].as<std::string>(), values["no-loop"].as<bool>());
   run.recording =
       vins::openRecording(values["bag"].as<std::string>(), selectionOf(values, run.options));
   run.reached = run.recording->summary().begin;
@@ -284,14 +328,17 @@ po::options_description describeOptions() {
 
 void printHelp(const po::options_description& options) {
   std::cout
-      << "Visual-inertial odometry on a recording, as fast as the machine allows. Nothing is\n"
-         "dropped, and the same recording gives the same bytes.\n"
+      << "Visual-inertial odometry and loop closing on a recording, as fast as the machine "
+         "allows.\n"
+         "Nothing is dropped, and the same recording gives the same bytes.\n"
          "Usage: run_bag CONFIG BAG [options]\n"
          "Example: run_bag config/euroc/euroc_config.yaml MH_01_easy.bag --out mh01\n\n"
       << options
       << "\nWritten to the folder: vio_live.txt (TUM, each pose as it was known at its\n"
-         "frame), vins_result_no_loop.csv (VINS-Mono's form), timing.json, events.csv and,\n"
-         "with ground truth, ground_truth.txt, report.html, evaluation.json.\n"
+         "frame), loop_live.txt (corrected by the loops known then), loop_final.txt (by all\n"
+         "loops), vins_result_no_loop.csv and vins_result_loop.csv (VINS-Mono's form),\n"
+         "timing.json, events.csv and, with ground truth, ground_truth.txt, report.html, "
+         "evaluation.json.\n"
          "Exit code: 0 initialised and tracking to the end, 1 bad input, 2 never initialised\n"
          "or lost at the end, 130 interrupted (what was done so far is written).\n";
 }

@@ -58,9 +58,11 @@ bool makeReport(const TrajectoryReport& report) {
     std::cerr << "no report: evaluate_trajectory of the package vins_tests is not there\n";
     return false;
   }
-  const int exit_code =
-      runProgram({program, report.ground_truth, report.estimate, "--align", report.alignment,
-                  "--html", report.html, "--json", report.json});
+  std::vector<std::string> arguments = {program, report.ground_truth};
+  arguments.insert(arguments.end(), report.estimates.begin(), report.estimates.end());
+  arguments.insert(arguments.end(),
+                   {"--align", report.alignment, "--html", report.html, "--json", report.json});
+  const int exit_code = runProgram(arguments);
   if (exit_code == 0) return true;
   std::cerr << "no report: " << program << " ended with code " << exit_code << "\n";
   return false;

@@ -7,8 +7,8 @@ namespace vins {
 
 /// What to evaluate.
 struct TrajectoryReport {
-  std::string ground_truth;  ///< in any form that evaluate_trajectory reads
-  std::string estimate;      ///< likewise
+  std::string ground_truth;            ///< in any form that evaluate_trajectory reads
+  std::vector<std::string> estimates;  ///< likewise; compared with one another
   std::string alignment = "posyaw";
   std::string html;  ///< page to write
   std::string json;  ///< figures to write

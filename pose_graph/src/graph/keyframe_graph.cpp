@@ -98,6 +98,13 @@ LoopOutcome KeyframeGraph::addLoopEdge(const LoopEdge& edge) {
   if (edge.query_id == edge.old_id || !isFinite(edge.T_old_query) || !edge.covariance.allFinite()) {
     return LoopOutcome::kUnusable;
   }
+  const auto known = std::find_if(loops_.begin(), loops_.end(), [&edge](const LoopEdge& loop) {
+    return loop.query_id == edge.query_id && loop.old_id == edge.old_id;
+  });
+  if (known != loops_.end()) {
+    *known = edge;
+    return LoopOutcome::kReplaced;
+  }
   loops_.push_back(edge);
   const std::uint32_t of_query = component(query->second.sequence);
   const std::uint32_t of_old = component(old->second.sequence);

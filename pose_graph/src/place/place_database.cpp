@@ -37,6 +37,15 @@ void PlaceDatabase::add(std::int64_t id, const BagOfWords& bag) {
   }
 }
 
+std::size_t PlaceDatabase::memory() const {
+  std::size_t bytes = postings_.capacity() * sizeof(postings_[0]);
+  for (const auto& list : postings_) bytes += list.capacity() * sizeof(Posting);
+  for (const Slot& place : places_) {
+    bytes += sizeof(Slot) + place.words.capacity() * sizeof(place.words[0]);
+  }
+  return bytes;
+}
+
 bool PlaceDatabase::remove(std::int64_t id) {
   const auto found = slots_.find(id);
   if (found == slots_.end()) return false;

@@ -12,11 +12,15 @@
 #include "camera_model/camera.h"
 #include "feature_tracker/feature_tracker.h"
 #include "feature_tracker/tracker_options.h"
+#include "pose_graph/place/recent_images.h"
+#include "pose_graph/pose_graph.h"
+#include "pose_graph/pose_graph_options.h"
 #include "vins_core/event.h"
 #include "vins_core/imu.h"
 #include "vins_core/parameters.h"
 #include "vins_core/pose.h"
 #include "vins_core/time.h"
+#include "vins_core/trajectory.h"
 #include "vins_estimator/estimator.h"
 #include "vins_estimator/estimator_options.h"
 #include "vins_pipeline/run_record.h"
@@ -31,6 +35,8 @@ struct PipelineOptions {
   cv::Mat mask;  ///< CV_8UC1, 0 where no corner may be; or empty
   std::string imu_topic = "/imu0";
   std::vector<std::string> image_topics = {"/cam0/image_raw"};
+  PoseGraphConfiguration loops;
+  PlaceModel places;  ///< empty: no loop closing, whatever `loops` says
 };
 
 /// Reads a rig's configuration file: camera, tracker, estimator, topics. Throws InputError naming
@@ -43,12 +49,15 @@ struct PipelineResult {
   TrackerStatistics tracker;
   int features = 0;                        ///< handed to the estimator
   std::vector<EstimatorResult> estimates;  ///< of this frame, or of those before that had waited
-  std::vector<Event> events;               ///< of all stages, in their order
+  /// The odometries of `estimates` in the map, as known now; none without loop closing.
+  std::vector<StampedPose> corrected;
+  std::vector<Event> events;                                ///< of all stages, in their order
   std::vector<std::pair<std::string, Duration>> durations;  ///< stage by stage
 };
 
-/// All stages in one process and one thread: samples and images in, the state out. What comes out
-/// depends on what goes in, not on when: an image waits for the IMU samples up to its time.
+/// All stages in one process: samples and images in, the state out. What comes out depends on what
+/// goes in, not on when: an image waits for the IMU samples up to its time, and one thread does it
+/// all (unless the pose graph's options want its optimization beside).
 class Pipeline {
  public:
   /// Throws InputError for bad options.
@@ -66,6 +75,9 @@ class Pipeline {
   /// The input has ended: images no longer wait for samples.
   void finish() { finished_ = true; }
 
+  /// The third stage; null without loop closing.
+  PoseGraph* poseGraph() { return pose_graph_.get(); }
+
  private:
   struct WaitingImage {
     Stamp stamp;
@@ -76,9 +88,14 @@ class Pipeline {
   std::vector<ImuSample> samplesUpTo(Stamp stamp);
   void track(const WaitingImage& image, PipelineResult* result);
   void estimate(PipelineResult* result);
+  void closeLoops(const EstimatorResult& estimate, PipelineResult* result);
+  void addKeyframe(const Keyframe& keyframe, PipelineResult* result);
 
   FeatureTracker tracker_;
   Estimator estimator_;
+  std::unique_ptr<PoseGraph> pose_graph_;
+  bool refines_loops_;
+  RecentImages recent_images_;
   Stamp offset_;                   ///< td [ns]
   std::deque<ImuSample> samples_;  ///< not yet handed to the tracker
   std::deque<WaitingImage> images_;

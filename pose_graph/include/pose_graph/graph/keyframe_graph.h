@@ -56,6 +56,7 @@ struct KeyframeGraphOptions {
 enum class LoopOutcome {
   kAdded,            ///< between keyframes that had a common frame already
   kJoined,           ///< the same, and two sequences have a common frame from now on
+  kReplaced,         ///< in place of an earlier measurement between the same two keyframes
   kUnknownKeyframe,  ///< not added: one of its ends is not in the graph
   kUnusable,         ///< not added: its ends are one keyframe, or it holds no finite numbers
 };
@@ -92,8 +93,9 @@ class KeyframeGraph {
   /// The odometry's last word on a keyframe: its map pose is carried along. False: not there.
   bool updateOdometry(std::int64_t id, const Pose& T_wb);
 
-  /// Adds a loop. Where it is the first between two components, the younger one is moved as a whole
-  /// by the transform with yaw only that fulfils the loop; the older one stays.
+  /// Adds a loop, or puts it in place of the one that has the same two ends. Where it is the first
+  /// between two components, the younger one is moved as a whole by the transform with yaw only
+  /// that fulfils the loop; the older one stays.
   LoopOutcome addLoopEdge(const LoopEdge& edge);
 
   /// Takes a keyframe out. Its loops are handed to its nearest neighbour in the sequence, along the

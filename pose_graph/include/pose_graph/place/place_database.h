@@ -33,6 +33,9 @@ class PlaceDatabase {
   bool contains(std::int64_t id) const { return slots_.count(id) != 0; }
   std::size_t size() const { return slots_.size(); }
 
+  /// Bytes that it takes, about.
+  std::size_t memory() const;
+
   /// All ids, rising.
   std::vector<std::int64_t> ids() const;
 

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "pose_graph/place/brief.h"
+#include "pose_graph/place/vocabulary.h"
+
+namespace vins {
+
+/// By what places are described and told apart. The two belong together: a vocabulary knows only
+/// descriptors of the pattern that it was trained with.
+struct PlaceModel {
+  std::shared_ptr<const Vocabulary> vocabulary;
+  std::shared_ptr<const BriefPattern> pattern;
+};
+
+/// Which files to read.
+struct PlaceModelFiles {
+  std::string vocabulary;  ///< "": brief_k10L5.voc of the shipped ones
+  std::string pattern;     ///< "": brief_pattern.yml of the shipped ones
+
+  bool needsShipped() const { return vocabulary.empty() || pattern.empty(); }
+};
+
+/// Reads them; `shipped_folder` is the folder of the files that come with this package. Throws
+/// InputError naming a file that is not there or broken.
+PlaceModel readPlaceModel(const PlaceModelFiles& files, const std::string& shipped_folder);
+
+}  // namespace vins

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "camera_model/camera.h"
+#include "pose_graph/graph/keyframe_graph.h"
+#include "pose_graph/graph/optimizer_thread.h"
+#include "pose_graph/loop/loop_finder.h"
+#include "pose_graph/pose_graph_options.h"
+#include "vins_core/event.h"
+#include "vins_core/keyframe.h"
+#include "vins_core/loop_match.h"
+
+namespace vins {
+
+/// What came of a keyframe.
+struct PoseGraphResult {
+  bool is_kept = false;            ///< false: too near to the last ones, left out
+  std::optional<LoopMatch> match;  ///< a verified loop, for the estimator
+  LoopSearch search;               ///< what was compared on the way, for drawing
+  std::vector<Event> events;
+  double optimize_seconds = 0.0;  ///< in the caller; for statistics only
+};
+
+/// What came of a refined loop.
+struct LoopEdgeResult {
+  LoopOutcome outcome = LoopOutcome::kUnknownKeyframe;
+  std::vector<Event> events;
+  double optimize_seconds = 0.0;  ///< in the caller; for statistics only
+};
+
+/// Keyframes of a sequence, old ones first, with their poses in odometry and map.
+struct SequencePath {
+  std::uint32_t sequence = 0;
+  bool in_map = false;  ///< false: no loop has joined it to the map yet
+  std::vector<KeyframeVertex> keyframes;
+};
+
+/// Counts since the start.
+struct PoseGraphStatistics {
+  std::size_t keyframes = 0;  ///< in the graph
+  std::size_t skipped = 0;    ///< left out: too near to others
+  std::size_t removed = 0;    ///< to keep the graph bounded
+  std::size_t sequences = 0;
+  std::size_t loops = 0;     ///< edges in the graph
+  std::size_t found = 0;     ///< verified loops
+  std::size_t refined = 0;   ///< of these, measured again by the estimator
+  std::size_t rejected = 0;  ///< candidates that the verification has refused
+  std::size_t optimizations = 0;
+  std::size_t memory = 0;  ///< of views, index and graph, about [bytes]
+};
+
+/// The third stage: keyframes in, verified loops and the corrected path out. (T. Qin, P. Li, S.
+/// Shen, "VINS-Mono", T-RO 2018, sections VII and VIII.)
+///
+/// For use by one thread; the optimization has its own, unless told otherwise. A run without that
+/// thread gives the same on every run.
+class PoseGraph {
+ public:
+  /// Throws InputError for bad options.
+  PoseGraph(const PoseGraphOptions& options, std::shared_ptr<const Camera> camera,
+            const PlaceModel& places);
+
+  /// A keyframe and its image, CV_8UC1, or none: then the place is not remembered. Ids must rise.
+  /// Throws InputError where the id is known, the stamp does not rise within the sequence, or the
+  /// image is not the camera's.
+  PoseGraphResult addKeyframe(const Keyframe& keyframe, const cv::Mat& image);
+
+  /// The odometry's last word on a keyframe. False where it is not in the graph.
+  bool update(const KeyframePoseUpdate& update);
+
+  /// A loop as the estimator has refined it: in place of the verification's.
+  LoopEdgeResult addLoopEdge(const LoopEdge& edge);
+
+  /// Waits until no optimization is under way or asked for.
+  void waitUntilIdle() { optimizer_.waitUntilIdle(); }
+
+  /// The input has ended: the graph is optimized once more with all that is known.
+  void finish();
+
+  /// T_map_odom of a sequence as known now, yaw and translation only; nothing where it has no
+  /// keyframe.
+  std::optional<Pose> drift(std::uint32_t sequence);
+
+  /// A copy of the keyframes by sequence, from old to new.
+  std::vector<SequencePath> paths();
+
+  /// A copy of the loops.
+  std::vector<LoopEdge> loops();
+
+  PoseGraphStatistics statistics();
+
+  /// A picture of a comparison that addKeyframe() told of, for people: see drawMatches(). Empty
+  /// where a view has been forgotten since.
+  cv::Mat draw(const CheckedCandidate& checked, const cv::Mat& query_image,
+               const cv::Mat& old_image) const;
+
+ private:
+  bool isWorthKeeping(const Keyframe& keyframe);
+  void search(const Keyframe& keyframe, const cv::Mat& image, PoseGraphResult* result);
+  void addFound(const Keyframe& keyframe, const LoopVerification& loop, double score,
+                PoseGraphResult* result);
+  LoopMatch matchOf(const Keyframe& keyframe, const LoopVerification& loop);
+  LoopEdge edgeOf(const LoopMatch& match) const;
+  void noteOutcome(LoopOutcome outcome, Stamp stamp, std::vector<Event>* events);
+  double optimize();
+  void reportFailures(Stamp stamp, std::vector<Event>* events);
+  void removeRedundant();
+
+  PoseGraphOptions options_;
+  LoopFinder finder_;
+  SharedKeyframeGraph graph_;
+  PoseGraphStatistics counts_;
+  std::optional<std::uint32_t> newest_sequence_;
+  int left_to_skip_ = 0;
+  std::atomic<std::size_t> runs_{0};
+  std::atomic<std::size_t> failures_{0};
+  std::size_t failures_told_ = 0;
+  OptimizerThread optimizer_;  ///< last: it works on the others
+};
+
+}  // namespace vins

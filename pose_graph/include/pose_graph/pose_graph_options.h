@@ -1,0 +1,62 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "pose_graph/graph/four_dof.h"
+#include "pose_graph/graph/keyframe_graph.h"
+#include "pose_graph/graph/thinning.h"
+#include "pose_graph/loop/loop_finder.h"
+#include "pose_graph/place/place_model.h"
+#include "vins_core/parameters.h"
+
+namespace vins {
+
+/// What PoseGraph goes by.
+struct PoseGraphOptions {
+  LoopFinderOptions loops;
+  KeyframeGraphOptions graph;
+  FourDofOptions optimizer;
+  ThinningOptions thinning;
+
+  /// A keyframe nearer than this to one of the last ones, and turned less than `skip_angle` from
+  /// it, is left out (skip_dis): 0 keeps all [m].
+  double skip_distance = 0.05;
+  double skip_angle = 3.0;   ///< [deg]
+  int skip_neighbours = 20;  ///< keyframes that are compared with, so that swaying adds nothing
+  int skip_count = 0;        ///< keyframes left out after each one that is taken (skip_cnt)
+
+  /// Of a loop as the verification has measured it, until the estimator has refined it: the fewest
+  /// inliers, 25 of them, each off by the 6 px that are allowed, give 0.15 degrees and, 5 m away, 2
+  /// cm. But their errors are not independent: the depths come from one window, whose scale and
+  /// tilt they share (a few percent of 5 m, some tenths of a degree).
+  double found_position_sigma = 0.1;  ///< [m]
+  double found_rotation_sigma = 1.0;  ///< [deg]
+
+  /// Optimizes on a thread of its own; false: in the caller, so that every run is the same.
+  bool threaded = true;
+
+  /// Throws InputError naming the value that is out of range.
+  void validate() const;
+};
+
+std::ostream& operator<<(std::ostream& out, const PoseGraphOptions& options);
+
+/// What a configuration file says of loop closing, in VINS-Mono's names where it has them.
+struct PoseGraphConfiguration {
+  bool is_on = true;               ///< loop_closure
+  bool refines_in_window = true;  ///< fast_relocalization: loops go to the estimator
+  PlaceModelFiles files;           ///< vocabulary_file, brief_pattern_file
+  bool loads_map = false;          ///< load_previous_pose_graph
+  std::string map_folder;          ///< pose_graph_save_path; "" where it is not given
+  bool saves_images = false;       ///< save_image: keyframes' images are kept in the map
+  PoseGraphOptions options;
+};
+
+/// Reads loop_closure, skip_dis, skip_cnt, load_previous_pose_graph, pose_graph_save_path,
+/// fast_relocalization, save_image, vocabulary_file, brief_pattern_file, max_keyframes and
+/// min_loop_inliers. All have defaults; files are seen from the configuration's folder. Throws
+/// InputError naming file, key, what was found and what is allowed.
+PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters);
+
+}  // namespace vins

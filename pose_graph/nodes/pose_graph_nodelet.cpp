@@ -1,0 +1,28 @@
+#include <memory>
+
+#include <nodelet/nodelet.h>
+#include <pluginlib/class_list_macros.hpp>
+
+#include "pose_graph_ros.h"
+#include "vins_core/input_error.h"
+
+namespace vins {
+
+/// The pose graph in a nodelet manager.
+class PoseGraphNodelet : public nodelet::Nodelet {
+ private:
+  void onInit() override {
+    try {
+      graph_ = std::make_unique<PoseGraphRos>(getNodeHandle(), getPrivateNodeHandle());
+    } catch (const InputError& error) {
+      NODELET_FATAL_STREAM(error.what());
+      throw;
+    }
+  }
+
+  std::unique_ptr<PoseGraphRos> graph_;
+};
+
+}  // namespace vins
+
+PLUGINLIB_EXPORT_CLASS(vins::PoseGraphNodelet, nodelet::Nodelet)

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nav_msgs/Odometry.h>
+#include <ros/ros.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include "picture_store.h"
+#include "pose_graph/pose_graph.h"
+
+namespace vins {
+
+/// Frame names of what is published.
+struct PoseGraphFrames {
+  std::string map = "map";
+  std::string odom = "odom";
+};
+
+/// Turns the pose graph's results into messages. Topics live in the node's own namespace, under the
+/// names that VINS-Mono's users know:
+/// - `pose_graph_path`: all keyframes of the map; `path_1`, `path_2`, ...: those of the first, the
+///   second sequence; `base_path`: those of the sequences before the newest that are in the map;
+///   `no_loop_path`: the newest sequence as the odometry alone has it;
+/// - `pose_graph`: steps and loops as markers; `match_image`: a picture of each loop;
+/// - `odometry`: corrected; `loop_match`: for the estimator; `event`.
+/// Paths and pictures are made only where somebody subscribes.
+class PoseGraphPublisher {
+ public:
+  PoseGraphPublisher(const ros::NodeHandle& node, const PoseGraphFrames& frames);
+
+  void publish(const std::vector<Event>& events);
+  void publish(const LoopMatch& match);
+
+  /// The odometry moved into the map, and map -> odom.
+  void publish(nav_msgs::Odometry odometry, const Pose& T_map_odom);
+
+  /// Paths and markers; at most twice a second unless `now`.
+  void publishPaths(PoseGraph* graph, bool now);
+
+  bool wantsPictures() const { return picture_.getNumSubscribers() > 0; }
+  void publishPicture(Stamp stamp, const cv::Mat& picture);
+
+ private:
+  void publishMapPath(const std::vector<SequencePath>& paths);
+  void publishSequences(const std::vector<SequencePath>& paths);
+
+  ros::NodeHandle node_;
+  PoseGraphFrames frames_;
+  ros::Publisher match_, path_, no_loop_path_, base_path_, markers_, picture_, odometry_, events_;
+  std::map<std::uint32_t, ros::Publisher> sequences_;
+  ros::WallTime last_paths_;
+  tf2_ros::TransformBroadcaster transforms_;
+};
+
+}  // namespace vins

@@ -1,0 +1,227 @@
+#include "pose_graph_ros.h"
+
+#include <utility>
+
+#include <cv_bridge/cv_bridge.h>
+#include <ros/package.h>
+#include <sensor_msgs/image_encodings.h>
+
+#include "camera_model/camera_file.h"
+#include "vins_core/input_error.h"
+#include "vins_core/parameters.h"
+#include "vins_msgs/conversions.h"
+
+namespace vins {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 400;   // several seconds of keyframes and odometries
+constexpr std::size_t kRecentImages = 60;  // three seconds at 20 Hz: the estimator may be behind
+constexpr std::size_t kRecentEvents = 5;
+
+Parameters loadConfiguration(const ros::NodeHandle& private_node) {
+  std::string path;
+  if (!private_node.getParam("config_file", path)) {
+    throw InputError("parameter '" + private_node.resolveName("config_file") +
+                     "' is not set; allowed: the path of the rig's YAML file");
+  }
+  return Parameters::load(path);
+}
+
+PoseGraphFrames framesOf(const ros::NodeHandle& private_node) {
+  PoseGraphFrames frames;
+  private_node.param("map_frame", frames.map, frames.map);
+  private_node.param("odom_frame", frames.odom, frames.odom);
+  return frames;
+}
+
+std::unique_ptr<PoseGraph> makeGraph(const Parameters& parameters,
+                                     const PoseGraphConfiguration& configuration) {
+  const std::string shipped = ros::package::getPath("pose_graph") + "/support_files";
+  ROS_INFO_STREAM("pose graph options:\n" << configuration.options);
+  return std::make_unique<PoseGraph>(configuration.options, readCamera(parameters),
+                                     readPlaceModel(configuration.files, shipped));
+}
+
+void log(const Event& event) {
+  if (event.severity == Severity::kInfo) {
+    ROS_INFO_STREAM(event);
+  } else {
+    ROS_WARN_STREAM(event);
+  }
+}
+
+/// The image in grey values; empty, and said so, where it cannot be had.
+cv::Mat toGrey(const sensor_msgs::Image::ConstPtr& message) {
+  try {
+    return cv_bridge::toCvCopy(message, sensor_msgs::image_encodings::MONO8)->image;
+  } catch (const cv_bridge::Exception& error) {
+    ROS_ERROR_STREAM_THROTTLE(1.0, "dropped an image: " << error.what());
+    return {};
+  }
+}
+
+}  // namespace
+
+PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node)
+    : configuration_(readPoseGraphConfiguration(loadConfiguration(private_node))),
+      publisher_(private_node, framesOf(private_node)),
+      pictures_(static_cast<std::size_t>(configuration_.options.thinning.max_keyframes)),
+      images_(kRecentImages),
+      diagnostics_(node, private_node) {
+  const Parameters parameters = loadConfiguration(private_node);
+  if (!configuration_.is_on) {
+    ROS_WARN("loop_closure is 0: the map is the odometry's world");
+    const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> pass =
+        [this](const nav_msgs::Odometry::ConstPtr& message) {
+          publisher_.publish(*message, Pose());
+        };
+    subscribers_.push_back(
+        node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, pass));
+    return;
+  }
+  graph_ = makeGraph(parameters, configuration_);
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("pose graph", this, &PoseGraphRos::report);
+  timer_ = node.createTimer(ros::Duration(1.0),
+                            [this](const ros::TimerEvent&) { diagnostics_.update(); });
+  worker_ = std::thread([this] { work(); });
+  subscribe(node, parameters.text("image_topic"));
+}
+
+PoseGraphRos::~PoseGraphRos() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  arrived_.notify_one();
+  if (worker_.joinable()) worker_.join();
+}
+
+void PoseGraphRos::subscribe(ros::NodeHandle node, const std::string& image_topic) {
+  subscribers_.push_back(node.subscribe(image_topic, 10, &PoseGraphRos::onImage, this));
+  const auto take = [&](auto message, const std::string& topic) {
+    using Message = decltype(message);
+    const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
+        [this](const boost::shared_ptr<const Message>& received) {
+          try {
+            push(vins_msgs::fromMsg(*received));
+          } catch (const InputError& error) {
+            ROS_ERROR_STREAM_THROTTLE(1.0, "dropped a message: " << error.what());
+          }
+        };
+    subscribers_.push_back(node.subscribe<Message>("/vins_estimator/" + topic, 200, callback));
+  };
+  take(vins_msgs::Keyframe(), "keyframe");
+  take(vins_msgs::KeyframePoseUpdate(), "keyframe_pose_update");
+  take(vins_msgs::LoopEdge(), "loop_edge");
+  const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> take_odometry =
+      [this](const nav_msgs::Odometry::ConstPtr& message) { push(*message); };
+  subscribers_.push_back(
+      node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, take_odometry));
+}
+
+void PoseGraphRos::onImage(const sensor_msgs::Image::ConstPtr& message) {
+  const cv::Mat image = toGrey(message);
+  if (image.empty()) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  images_.add(vins_msgs::toStamp(message->header.stamp), image);
+}
+
+void PoseGraphRos::push(Input input) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    // Falling behind for good: what is newest is left out.
+    if (queue_.size() >= kMaxWaiting) {
+      ++dropped_;
+      return;
+    }
+    queue_.push_back(std::move(input));
+  }
+  arrived_.notify_one();
+}
+
+void PoseGraphRos::work() {
+  while (true) {
+    std::deque<Input> inputs;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      statistics_ = graph_->statistics();
+      arrived_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
+      if (stopping_) return;
+      inputs.swap(queue_);
+    }
+    for (const Input& input : inputs) {
+      try {
+        std::visit([this](const auto& value) { handle(value); }, input);
+      } catch (const InputError& error) {
+        ROS_ERROR_STREAM_THROTTLE(1.0, "dropped a keyframe: " << error.what());
+      }
+    }
+  }
+}
+
+void PoseGraphRos::handle(const Keyframe& keyframe) {
+  cv::Mat image;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    image = images_.find(keyframe.stamp);
+    if (image.empty()) ++without_image_;
+  }
+  const PoseGraphResult result = graph_->addKeyframe(keyframe, image);
+  sequence_ = keyframe.sequence;
+  if (result.match && configuration_.refines_in_window) publisher_.publish(*result.match);
+  hear(result.events);
+  if (result.is_kept) showLoop(keyframe, image, result);
+  publisher_.publishPaths(graph_.get(), result.match.has_value());
+}
+
+void PoseGraphRos::showLoop(const Keyframe& keyframe, const cv::Mat& image,
+                            const PoseGraphResult& result) {
+  if (image.empty() || !publisher_.wantsPictures()) return;
+  pictures_.add(keyframe.id, image);
+  if (!result.match) return;
+  const cv::Mat old_image = pictures_.find(result.match->old_id, image.size());
+  publisher_.publishPicture(keyframe.stamp,
+                            graph_->draw(result.search.checked.back(), image, old_image));
+}
+
+void PoseGraphRos::handle(const LoopEdge& edge) { hear(graph_->addLoopEdge(edge).events); }
+
+void PoseGraphRos::handle(const nav_msgs::Odometry& odometry) {
+  publisher_.publish(odometry, graph_->drift(sequence_).value_or(Pose()));
+}
+
+void PoseGraphRos::hear(const std::vector<Event>& events) {
+  for (const Event& event : events) log(event);
+  publisher_.publish(events);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  recent_.insert(recent_.end(), events.begin(), events.end());
+  while (recent_.size() > kRecentEvents) recent_.pop_front();
+}
+
+void PoseGraphRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  using diagnostic_msgs::DiagnosticStatus;
+  if (statistics_.keyframes == 0) {
+    status.summary(DiagnosticStatus::OK, "no keyframe yet");
+  } else {
+    status.summary(DiagnosticStatus::OK, "mapping");
+  }
+  if (without_image_ > 0 && without_image_ * 2 > statistics_.keyframes) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "images do not reach the pose graph: no loops will be found");
+  }
+  status.add("keyframes", statistics_.keyframes);
+  status.add("keyframes left out", statistics_.skipped);
+  status.add("keyframes without image", without_image_);
+  status.add("sequences", statistics_.sequences);
+  status.add("loops", statistics_.loops);
+  status.add("candidates rejected", statistics_.rejected);
+  status.add("optimizations", statistics_.optimizations);
+  status.add("memory [MB]", 1e-6 * static_cast<double>(statistics_.memory));
+  status.add("messages waiting", queue_.size());
+  status.add("messages dropped", dropped_);
+  for (const Event& event : recent_) status.add("event " + event.code, event.text);
+}
+
+}  // namespace vins

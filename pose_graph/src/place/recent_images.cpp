@@ -1,0 +1,28 @@
+#include "pose_graph/place/recent_images.h"
+
+#include <cstdlib>
+
+namespace vins {
+namespace {
+
+constexpr Stamp kTolerance = 5'000'000;  // [ns]
+
+}  // namespace
+
+void RecentImages::add(Stamp stamp, const cv::Mat& image) {
+  if (!images_.empty() && stamp <= images_.back().stamp) images_.clear();
+  images_.push_back({stamp, image});
+  while (images_.size() > count_) images_.pop_front();
+}
+
+cv::Mat RecentImages::find(Stamp stamp) const {
+  const Entry* nearest = nullptr;
+  for (const Entry& entry : images_) {
+    const Stamp distance = std::abs(entry.stamp - stamp);
+    if (distance > kTolerance) continue;
+    if (nearest == nullptr || distance < std::abs(nearest->stamp - stamp)) nearest = &entry;
+  }
+  return nearest == nullptr ? cv::Mat() : nearest->image;
+}
+
+}  // namespace vins

@@ -1,0 +1,252 @@
+#include "pose_graph/pose_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "pose_graph/loop/match_drawing.h"
+#include "vins_core/heading.h"
+#include "vins_core/wall_clock.h"
+
+namespace vins {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// `age`: how long ago the old keyframe was [s].
+Event loopEvent(Stamp stamp, double age, const LoopVerification& loop, double score) {
+  return {stamp,
+          Severity::kInfo,
+          "loop_found",
+          "a place was recognised",
+          {{"query", static_cast<double>(loop.query_id)},
+           {"old", static_cast<double>(loop.old_id)},
+           {"inliers", static_cast<double>(loop.pose_inliers)},
+           {"distance_m", loop.distance},
+           {"yaw_deg", loop.yaw / kDegree},
+           {"score", score},
+           {"seconds_ago", age}}};
+}
+
+bool isNear(const Pose& a, const Pose& b, double distance, double angle) {
+  return (a.position - b.position).norm() < distance &&
+         a.rotation.angularDistance(b.rotation) < angle;
+}
+
+/// Bytes of the graph's tree of keyframes: a vertex, its key and the tree's three links.
+std::size_t graphMemory(const KeyframeGraph& graph) {
+  constexpr std::size_t kNode = sizeof(KeyframeVertex) + sizeof(std::int64_t) + 4 * sizeof(void*);
+  return graph.vertices().size() * kNode + graph.loops().capacity() * sizeof(LoopEdge);
+}
+
+}  // namespace
+
+PoseGraph::PoseGraph(const PoseGraphOptions& options, std::shared_ptr<const Camera> camera,
+                     const PlaceModel& places)
+    : options_(options),
+      finder_(std::move(camera), places, options.loops),
+      graph_(KeyframeGraph(options.graph)),
+      optimizer_(&graph_, options.optimizer, [this](const FourDofResult& result) {
+        ++runs_;
+        if (result.summary.status == MinimizerStatus::kFailed) ++failures_;
+      }) {
+  options_.validate();
+}
+
+PoseGraphResult PoseGraph::addKeyframe(const Keyframe& keyframe, const cv::Mat& image) {
+  PoseGraphResult result;
+  reportFailures(keyframe.stamp, &result.events);
+  result.is_kept = isWorthKeeping(keyframe);
+  if (!result.is_kept) {
+    ++counts_.skipped;
+    return result;
+  }
+  graph_.use([&](KeyframeGraph& graph) {
+    graph.addKeyframe(keyframe.id, keyframe.sequence, keyframe.stamp, keyframe.T_wb);
+  });
+  newest_sequence_ = keyframe.sequence;
+  left_to_skip_ = options_.skip_count;
+  if (!image.empty()) search(keyframe, image, &result);
+  removeRedundant();
+  return result;
+}
+
+bool PoseGraph::isWorthKeeping(const Keyframe& keyframe) {
+  if (newest_sequence_ != keyframe.sequence) return true;
+  if (left_to_skip_ > 0) {
+    --left_to_skip_;
+    return false;
+  }
+  return graph_.use([&](const KeyframeGraph& graph) {
+    const std::vector<std::int64_t>& ids = graph.keyframesOf(keyframe.sequence);
+    const auto reach = static_cast<std::size_t>(options_.skip_neighbours);
+    return std::none_of(ids.end() - static_cast<std::ptrdiff_t>(std::min(reach, ids.size())),
+                        ids.end(), [&](std::int64_t id) {
+                          return isNear(graph.vertices().at(id).T_wb, keyframe.T_wb,
+                                        options_.skip_distance, options_.skip_angle * kDegree);
+                        });
+  });
+}
+
+void PoseGraph::search(const Keyframe& keyframe, const cv::Mat& image, PoseGraphResult* result) {
+  result->search = finder_.addKeyframe(keyframe, image);
+  const LoopVerification* accepted = result->search.accepted();
+  counts_.rejected += result->search.checked.size() - (accepted != nullptr ? 1 : 0);
+  if (accepted != nullptr) {
+    addFound(keyframe, *accepted, result->search.checked.back().score, result);
+  }
+}
+
+void PoseGraph::addFound(const Keyframe& keyframe, const LoopVerification& loop, double score,
+                         PoseGraphResult* result) {
+  ++counts_.found;
+  result->match = matchOf(keyframe, loop);
+  const Stamp old_stamp = graph_.use(
+      [&](const KeyframeGraph& graph) { return graph.vertices().at(loop.old_id).stamp; });
+  result->events.push_back(
+      loopEvent(keyframe.stamp, toSeconds(keyframe.stamp - old_stamp), loop, score));
+  const LoopOutcome outcome =
+      graph_.use([&](KeyframeGraph& graph) { return graph.addLoopEdge(edgeOf(*result->match)); });
+  noteOutcome(outcome, keyframe.stamp, &result->events);
+  result->optimize_seconds = optimize();
+}
+
+LoopMatch PoseGraph::matchOf(const Keyframe& keyframe, const LoopVerification& loop) {
+  LoopMatch match;
+  match.query_id = loop.query_id;
+  match.old_id = loop.old_id;
+  match.query_stamp = keyframe.stamp;
+  match.T_old_query = loop.T_old_query;
+  match.T_bc_old = finder_.view(loop.old_id)->T_bc;
+  match.features = loop.features;
+  // Roll and pitch of the old keyframe are what gravity has told then; its yaw and its place in
+  // this odometry's world are known by the loop alone.
+  const Eigen::Quaterniond R_w_old = graph_.use(
+      [&](const KeyframeGraph& graph) { return graph.vertices().at(loop.old_id).T_wb.rotation; });
+  match.T_wb_old = keyframe.T_wb * loop.T_old_query.inverse();
+  const double yaw = yawOf(match.T_wb_old.rotation * R_w_old.conjugate());
+  match.T_wb_old.rotation = yawRotation(yaw) * R_w_old;
+  return match;
+}
+
+LoopEdge PoseGraph::edgeOf(const LoopMatch& match) const {
+  LoopEdge edge;
+  edge.query_id = match.query_id;
+  edge.old_id = match.old_id;
+  edge.query_stamp = match.query_stamp;
+  edge.T_old_query = match.T_old_query;
+  const double position = options_.found_position_sigma;
+  const double rotation = options_.found_rotation_sigma * kDegree;
+  edge.covariance.diagonal().head<3>().setConstant(position * position);
+  edge.covariance.diagonal().tail<3>().setConstant(rotation * rotation);
+  edge.inliers = static_cast<int>(match.features.size());
+  return edge;
+}
+
+void PoseGraph::noteOutcome(LoopOutcome outcome, Stamp stamp, std::vector<Event>* events) {
+  if (outcome != LoopOutcome::kJoined) return;
+  events->push_back({stamp,
+                     Severity::kInfo,
+                     "sequence_joined",
+                     "a loop has joined this run to an earlier one",
+                     {{"sequence", static_cast<double>(newest_sequence_.value_or(0))}}});
+}
+
+double PoseGraph::optimize() {
+  if (options_.threaded) {
+    optimizer_.request();
+    return 0.0;
+  }
+  WallClock clock;
+  optimizer_.solveNow();
+  return clock.lap();
+}
+
+void PoseGraph::reportFailures(Stamp stamp, std::vector<Event>* events) {
+  const std::size_t failures = failures_;
+  if (failures == failures_told_) return;
+  events->push_back({stamp,
+                     Severity::kWarning,
+                     "optimization_failed",
+                     "the pose graph could not be optimized; it stays as it was",
+                     {{"failures", static_cast<double>(failures)}}});
+  failures_told_ = failures;
+}
+
+void PoseGraph::removeRedundant() {
+  const std::vector<std::int64_t> ids = graph_.use([&](KeyframeGraph& graph) {
+    const std::vector<std::int64_t> redundant = redundantKeyframes(graph, options_.thinning);
+    for (const std::int64_t id : redundant) graph.removeKeyframe(id);
+    return redundant;
+  });
+  for (const std::int64_t id : ids) finder_.remove(id);
+  counts_.removed += ids.size();
+}
+
+bool PoseGraph::update(const KeyframePoseUpdate& update) {
+  return graph_.use(
+      [&](KeyframeGraph& graph) { return graph.updateOdometry(update.keyframe_id, update.T_wb); });
+}
+
+LoopEdgeResult PoseGraph::addLoopEdge(const LoopEdge& edge) {
+  LoopEdgeResult result;
+  result.outcome = graph_.use([&](KeyframeGraph& graph) { return graph.addLoopEdge(edge); });
+  noteOutcome(result.outcome, edge.query_stamp, &result.events);
+  const bool is_in =
+      result.outcome != LoopOutcome::kUnknownKeyframe && result.outcome != LoopOutcome::kUnusable;
+  if (!is_in) return result;
+  ++counts_.refined;
+  result.optimize_seconds = optimize();
+  return result;
+}
+
+void PoseGraph::finish() {
+  const bool has_loops =
+      graph_.use([](const KeyframeGraph& graph) { return !graph.loops().empty(); });
+  if (has_loops) optimizer_.solveNow();
+}
+
+std::optional<Pose> PoseGraph::drift(std::uint32_t sequence) {
+  return graph_.use([&](const KeyframeGraph& graph) { return graph.drift(sequence); });
+}
+
+std::vector<SequencePath> PoseGraph::paths() {
+  return graph_.use([](const KeyframeGraph& graph) {
+    std::vector<SequencePath> paths;
+    for (const std::uint32_t sequence : graph.sequences()) {
+      SequencePath path{sequence, graph.inMap(sequence), {}};
+      for (const std::int64_t id : graph.keyframesOf(sequence)) {
+        path.keyframes.push_back(graph.vertices().at(id));
+      }
+      paths.push_back(std::move(path));
+    }
+    return paths;
+  });
+}
+
+std::vector<LoopEdge> PoseGraph::loops() {
+  return graph_.use([](const KeyframeGraph& graph) { return graph.loops(); });
+}
+
+PoseGraphStatistics PoseGraph::statistics() {
+  PoseGraphStatistics statistics = counts_;
+  graph_.use([&](const KeyframeGraph& graph) {
+    statistics.keyframes = graph.vertices().size();
+    statistics.sequences = graph.sequences().size();
+    statistics.loops = graph.loops().size();
+    statistics.memory = finder_.memory() + graphMemory(graph);
+  });
+  statistics.optimizations = runs_;
+  return statistics;
+}
+
+cv::Mat PoseGraph::draw(const CheckedCandidate& checked, const cv::Mat& query_image,
+                        const cv::Mat& old_image) const {
+  const KeyframeView* query = finder_.view(checked.verification.query_id);
+  const KeyframeView* old = finder_.view(checked.verification.old_id);
+  if (query == nullptr || old == nullptr) return {};
+  return drawMatches(query_image, old_image, *query, *old, checked.verification, checked.score);
+}
+
+}  // namespace vins

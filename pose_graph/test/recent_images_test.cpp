@@ -1,0 +1,39 @@
+#include "pose_graph/place/recent_images.h"
+
+#include <gtest/gtest.h>
+
+namespace vins {
+namespace {
+
+constexpr Stamp kMs = 1'000'000;
+
+cv::Mat imageOf(int value) { return cv::Mat1b(1, 1, static_cast<uchar>(value)); }
+
+TEST(RecentImages, FindsTheNearestAndForgetsTheOldest) {
+  RecentImages images(3);
+  for (int i = 0; i < 5; ++i) images.add(i * 50 * kMs, imageOf(i));
+  EXPECT_EQ(images.size(), 3u);
+  EXPECT_TRUE(images.find(50 * kMs).empty()) << "forgotten";
+  EXPECT_EQ(images.find(100 * kMs).at<uchar>(0), 2);
+  EXPECT_EQ(images.find(204 * kMs).at<uchar>(0), 4) << "moved by a little";
+  EXPECT_TRUE(images.find(225 * kMs).empty()) << "between two: neither";
+}
+
+TEST(RecentImages, TakesTheNearerOfTwoThatAreClose) {
+  RecentImages images(3);
+  images.add(0, imageOf(0));
+  images.add(6 * kMs, imageOf(1));
+  EXPECT_EQ(images.find(2 * kMs).at<uchar>(0), 0);
+  EXPECT_EQ(images.find(4 * kMs).at<uchar>(0), 1);
+}
+
+TEST(RecentImages, ARestartedRecordingBeginsAnew) {
+  RecentImages images(3);
+  images.add(1000 * kMs, imageOf(0));
+  images.add(0, imageOf(1));
+  EXPECT_EQ(images.size(), 1u);
+  EXPECT_TRUE(images.find(1000 * kMs).empty());
+}
+
+}  // namespace
+}  // namespace vins

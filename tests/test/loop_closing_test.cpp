@@ -1,0 +1,121 @@
+// Loop closing on a simulated flight, with the programs as a user runs them.
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "vins_core/trajectory_file.h"
+
+namespace fs = std::filesystem;
+
+namespace vins {
+namespace {
+
+std::string textOf(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A loop as events.csv tells of it.
+struct ToldLoop {
+  Stamp stamp = 0;
+  std::map<std::string, double> figures;
+};
+
+/// Two rounds through a hall in 40 s; a small image and half the rate, so that it takes not long.
+class LoopClosing : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    fs::create_directories(folder());
+    std::ofstream(folder() / "camera.yaml")
+        << "%YAML:1.0\n---\nmodel_type: PINHOLE\ncamera_name: small\nimage_width: 376\n"
+           "image_height: 240\ndistortion_parameters: {k1: 0, k2: 0, p1: 0, p2: 0}\n"
+           "projection_parameters: {fx: 229.0, fy: 229.0, cx: 188.0, cy: 120.0}\n";
+    run("vins_tests/simulate_bag", "-o " + (folder() / "hall.bag").string() +
+                                       " --trajectory hall_loop --duration 40 --rate 10 --camera " +
+                                       (folder() / "camera.yaml").string());
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder()); }
+
+  static fs::path folder() { return fs::path(::testing::TempDir()) / "loop_closing_test"; }
+
+  /// A program of this workspace: its exit code; what it says is in log.txt.
+  static int run(const std::string& program, const std::string& arguments) {
+    const fs::path lib = fs::read_symlink("/proc/self/exe").parent_path().parent_path();
+    const std::string command = (lib / program).string() + " " + arguments + " > " +
+                                (folder() / "log.txt").string() + " 2>&1";
+    return std::system(command.c_str());
+  }
+
+  static int runBag(const std::string& out, const std::string& more = "") {
+    return run("vins_pipeline/run_bag", (folder() / "hall_rig.yaml").string() + " " +
+                                            (folder() / "hall.bag").string() + " --out " +
+                                            (folder() / out).string() + " " + more);
+  }
+
+  static std::vector<ToldLoop> loopsOf(const std::string& run) {
+    std::vector<ToldLoop> loops;
+    std::istringstream lines(textOf(folder() / run / "events.csv"));
+    for (std::string line; std::getline(lines, line);) {
+      if (line.find(",loop_found,") == std::string::npos) continue;
+      ToldLoop loop;
+      loop.stamp = std::stoll(line);
+      std::istringstream figures(line.substr(line.rfind(',') + 1));
+      for (std::string figure; figures >> figure;) {
+        const std::size_t equals = figure.find('=');
+        loop.figures[figure.substr(0, equals)] = std::stod(figure.substr(equals + 1));
+      }
+      loops.push_back(loop);
+    }
+    return loops;
+  }
+
+  /// Root mean square position error, after alignment [m].
+  static double errorOf(const std::string& run, const std::string& name) {
+    const std::string text = textOf(folder() / run / "evaluation.json");
+    const std::size_t at =
+        text.find("\"rmse\":", text.find("\"ate_m\"", text.find("\"name\": \"" + name)));
+    return at == std::string::npos ? NAN : std::stod(text.substr(at + 7));
+  }
+};
+
+TEST_F(LoopClosing, TheSecondRoundIsRecognisedAndBringsThePathNearerToTheTruth) {
+  ASSERT_EQ(runBag("first"), 0) << textOf(folder() / "log.txt");
+  const Trajectory truth = readTrajectoryFile((folder() / "hall_groundtruth.txt").string());
+  const std::vector<ToldLoop> loops = loopsOf("first");
+  // From 20 s on; the last ones come at a rest. One in two seconds is asked for, at least.
+  EXPECT_GE(loops.size(), 8u);
+  for (const ToldLoop& loop : loops) {
+    const auto now = truth.interpolate(loop.stamp, 0.1);
+    const auto then =
+        truth.interpolate(loop.stamp - toNanoseconds(loop.figures.at("seconds_ago")), 0.1);
+    ASSERT_TRUE(now && then);
+    const double distance = (now->position - then->position).norm();
+    // The hall is 14 m long, a wrong place is metres away; a right one is measured to some
+    // centimetres.
+    EXPECT_NEAR(loop.figures.at("distance_m"), distance, 0.3) << loop.stamp;
+  }
+  EXPECT_LE(errorOf("first", "loop_final"), errorOf("first", "vio_live"));
+
+  // The same again, byte for byte; and the odometry does not depend on the loops.
+  ASSERT_EQ(runBag("second"), 0);
+  for (const char* file :
+       {"vio_live.txt", "loop_live.txt", "loop_final.txt", "vins_result_loop.csv", "events.csv"}) {
+    EXPECT_EQ(textOf(folder() / "first" / file), textOf(folder() / "second" / file)) << file;
+    EXPECT_FALSE(textOf(folder() / "first" / file).empty()) << file;
+  }
+  ASSERT_EQ(runBag("alone", "--no-loop"), 0);
+  EXPECT_EQ(textOf(folder() / "first/vio_live.txt"), textOf(folder() / "alone/vio_live.txt"));
+  EXPECT_FALSE(fs::exists(folder() / "alone/loop_live.txt"));
+}
+
+}  // namespace
+}  // namespace vins
