@@ -26,12 +26,12 @@ struct PoseGraphOptions {
   int skip_neighbours = 20;  ///< keyframes that are compared with, so that swaying adds nothing
   int skip_count = 0;        ///< keyframes left out after each one that is taken (skip_cnt)
 
-  /// Of a loop as the verification has measured it, until the estimator has refined it: the fewest
-  /// inliers, 25 of them, each off by the 6 px that are allowed, give 0.15 degrees and, 5 m away, 2
-  /// cm. But their errors are not independent: the depths come from one window, whose scale and
-  /// tilt they share (a few percent of 5 m, some tenths of a degree).
-  double found_position_sigma = 0.1;  ///< [m]
-  double found_rotation_sigma = 1.0;  ///< [deg]
+  /// Of a loop as the verification has measured it, until the estimator has refined it. The
+  /// matches' own noise is small: 25 of them, off by 2 px, give 0.05 degrees and, 5 m away, 4 mm.
+  /// What they share is more: their depths come from one window, whose scale is known to a percent
+  /// (5 cm of 5 m) and whose tilt and yaw move with them by some tenths of a degree.
+  double found_position_sigma = 0.05;  ///< [m]
+  double found_rotation_sigma = 0.5;   ///< [deg]
 
   /// Optimizes on a thread of its own; false: in the caller, so that every run is the same.
   bool threaded = true;
