@@ -109,7 +109,7 @@ TEST_F(LoopClosing, TheSecondRoundIsRecognisedAndBringsThePathNearerToTheTruth) 
   }
   EXPECT_LE(errorOf("first", "loop_final"), errorOf("first", "vio_live"));
 
-  // The same again, byte for byte; and the odometry does not depend on the loops.
+  // The same again, byte for byte.
   ASSERT_EQ(runBag("second"), 0);
   for (const char* file :
        {"vio_live.txt", "loop_live.txt", "loop_final.txt", "vins_result_loop.csv", "events.csv"}) {
@@ -117,7 +117,9 @@ TEST_F(LoopClosing, TheSecondRoundIsRecognisedAndBringsThePathNearerToTheTruth) 
     EXPECT_FALSE(textOf(folder() / "first" / file).empty()) << file;
   }
   ASSERT_EQ(runBag("alone", "--no-loop"), 0);
-  EXPECT_EQ(textOf(folder() / "first/vio_live.txt"), textOf(folder() / "alone/vio_live.txt"));
+  // Loops that are refined in the window tell the odometry of its landmarks, and no more: neither
+  // better nor worse than a centimetre on fifty metres.
+  EXPECT_NEAR(errorOf("first", "vio_live"), errorOf("alone", "vio_live"), 0.01);
   EXPECT_FALSE(fs::exists(folder() / "alone/loop_live.txt"));
 }
 
