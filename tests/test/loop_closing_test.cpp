@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "vins_core/trajectory_file.h"
 
@@ -49,7 +50,10 @@ class LoopClosing : public ::testing::Test {
   }
   static void TearDownTestSuite() { fs::remove_all(folder()); }
 
-  static fs::path folder() { return fs::path(::testing::TempDir()) / "loop_closing_test"; }
+  /// Of this process: the test may run twice at a time on one machine.
+  static fs::path folder() {
+    return fs::path(::testing::TempDir()) / ("loop_closing_test_" + std::to_string(getpid()));
+  }
 
   /// A program of this workspace: its exit code; what it says is in log.txt.
   static int run(const std::string& program, const std::string& arguments) {
