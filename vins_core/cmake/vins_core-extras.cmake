@@ -11,12 +11,14 @@ endif()
 option(VINS_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 
 # vins_target_options(TARGET ...): C++17, the warnings, and floating point that does not depend on
-# whether the machine has fused multiply-add.
+# whether the machine has fused multiply-add. Nothing reads errno or the processor's exception flags
+# after mathematics: without them the compiler computes several roots at once, with the same values.
 function(vins_target_options)
   foreach(target ${ARGN})
     set_target_properties(${target} PROPERTIES
       CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -ffp-contract=off
+      -fno-math-errno -fno-trapping-math
       $<$<BOOL:${VINS_WARNINGS_AS_ERRORS}>:-Werror>)
   endforeach()
 endfunction()
