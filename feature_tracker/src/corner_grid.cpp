@@ -4,16 +4,20 @@
 #include <cmath>
 #include <utility>
 
+#include <opencv2/core/hal/intrin.hpp>
+
 namespace vins {
 namespace {
 
-constexpr int kRadius = 3;  // of the window of the structure tensor
-constexpr int kWindow = 2 * kRadius + 1;
-constexpr double kScharrUnit = 32.0;  // of a gradient of one grey value per pixel
-constexpr std::size_t kChoices = 4;   // corners of a cell that compete
-constexpr int kFewestCells = 4;       // that are searched where corners are missing at all
-constexpr int kRest = 3;              // images in which a cell that gave nothing is not searched
-constexpr int kCellsPerCorner = 1;    // that are searched for each missing corner
+constexpr int kBlock = 2;   // pixels between scores: finer, they say little more
+constexpr int kBlocks = 4;  // side of the window of the structure tensor
+constexpr int kWindow = kBlock * kBlocks;
+constexpr int kReach = kWindow / 2 - 1;  // of the window before a score's place, and after it
+constexpr double kScharrUnit = 32.0;     // of a gradient of one grey value per pixel
+constexpr std::size_t kChoices = 4;      // corners of a cell that compete
+constexpr int kFewestCells = 4;          // that are searched where corners are missing at all
+constexpr int kRest = 3;                 // images in which a cell that gave nothing is not searched
+constexpr int kCellsPerCorner = 2;       // that are searched for each missing corner
 
 /// The smaller eigenvalue of [xx xy; xy yy].
 inline float smallerEigenvalue(float xx, float xy, float yy) {
@@ -24,16 +28,30 @@ inline float smallerEigenvalue(float xx, float xy, float yy) {
   return smaller > 0.0F ? smaller : 0.0F;
 }
 
-/// Products xx, xy, yy of gradients x, y that lie in turn.
-void multiplyGradients(const short* gradients, int count, float* xx, float* xy, float* yy) {
-  for (int i = 0; i < count; ++i) {
-    const float x = gradients[2 * i], y = gradients[2 * i + 1];
-    xx[i] = x * x, xy[i] = x * y, yy[i] = y * y;
+/// Sums of the products xx, xy, yy of gradients x, y, which lie in turn, over blocks of 2x2 pixels.
+void multiplyGradients(const short* upper, const short* lower, int blocks, int* xx, int* xy,
+                       int* yy) {
+  constexpr int kTogether = 4;
+  int i = 0;
+  for (; i + kTogether <= blocks; i += kTogether) {
+    cv::v_int16x8 x, y, x_below, y_below;
+    cv::v_load_deinterleave(upper + 4 * i, x, y);
+    cv::v_load_deinterleave(lower + 4 * i, x_below, y_below);
+    cv::v_store(xx + i, cv::v_dotprod(x, x) + cv::v_dotprod(x_below, x_below));
+    cv::v_store(xy + i, cv::v_dotprod(x, y) + cv::v_dotprod(x_below, y_below));
+    cv::v_store(yy + i, cv::v_dotprod(y, y) + cv::v_dotprod(y_below, y_below));
+  }
+  for (; i < blocks; ++i) {
+    const short* a = upper + 4 * i;
+    const short* b = lower + 4 * i;
+    xx[i] = a[0] * a[0] + a[2] * a[2] + b[0] * b[0] + b[2] * b[2];
+    xy[i] = a[0] * a[1] + a[2] * a[3] + b[0] * b[1] + b[2] * b[3];
+    yy[i] = a[1] * a[1] + a[3] * a[3] + b[1] * b[1] + b[3] * b[3];
   }
 }
 
 /// Adds a row to sums of columns and takes an old one away, which may be null.
-void carryOn(const float* row, const float* old, int count, float* sums) {
+void carryOn(const int* row, const int* old, int count, int* sums) {
   if (old == nullptr) {
     for (int i = 0; i < count; ++i) sums[i] += row[i];
   } else {
@@ -41,18 +59,18 @@ void carryOn(const float* row, const float* old, int count, float* sums) {
   }
 }
 
-/// Sum of seven neighbours from `a` on.
-inline float sumOfSeven(const float* a) {
-  static_assert(kWindow == 7, "written out, so that the compiler can do several at once");
-  return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + a[6]);
+/// Sum of four neighbours from `a` on.
+inline float sumOfFour(const int* a) {
+  static_assert(kBlocks == 4, "written out, so that the compiler can do several at once");
+  return static_cast<float>((a[0] + a[1]) + (a[2] + a[3]));
 }
 
-/// Squares of the scores of a row of pixels from the column sums of the structure tensor.
-void scoreRow(const float* xx, const float* xy, const float* yy, int count, float* squares) {
+/// Squares of a row of scores from the column sums of the structure tensor.
+void scoreRow(const int* xx, const int* xy, const int* yy, int count, float* squares) {
   constexpr float kUnit = static_cast<float>(1.0 / (kScharrUnit * kWindow));
   for (int i = 0; i < count; ++i) {
-    squares[i] = kUnit * kUnit *
-                 smallerEigenvalue(sumOfSeven(xx + i), sumOfSeven(xy + i), sumOfSeven(yy + i));
+    squares[i] =
+        kUnit * kUnit * smallerEigenvalue(sumOfFour(xx + i), sumOfFour(xy + i), sumOfFour(yy + i));
   }
 }
 
@@ -107,7 +125,7 @@ CornerGrid::CornerGrid(ImageSize size, const CornerGridOptions& options, cv::Mat
       mask_(std::move(mask)),
       neighbourhood_(size, options.min_distance) {
   // The outermost pixels have no gradient to be trusted, whatever the border.
-  options_.border = std::max(options_.border, kRadius + 2);
+  options_.border = std::max(options_.border, kReach + 2);
   const double pixels = static_cast<double>(size.width) * size.height;
   const double side =
       std::max({std::sqrt(pixels / options.max_corners), options.min_distance, 2.0 * kWindow});
@@ -167,28 +185,30 @@ std::vector<int> CornerGrid::cellsToSearch(int missing) {
   return cells;
 }
 
-void CornerGrid::computeScores(const cv::Mat& gradients, const cv::Rect& area) {
-  const int width = area.width + 2 * kRadius;
-  const int rows = area.height + 2 * kRadius;
-  products_.create(3 * std::max(rows, products_.rows / 3), std::max(width, products_.cols));
-  columns_sums_.create(3, std::max(width, columns_sums_.cols));
-  squared_scores_.create(std::max(area.height, squared_scores_.rows),
-                         std::max(area.width, squared_scores_.cols));
-  for (int row = 0; row < rows; ++row) {
-    multiplyGradients(gradients.ptr<short>(area.y + row - kRadius) + 2 * (area.x - kRadius), width,
-                      products_[3 * row], products_[3 * row + 1], products_[3 * row + 2]);
-  }
+cv::Size CornerGrid::computeScores(const cv::Mat& gradients, const cv::Rect& area) {
+  const cv::Size scores(area.width / kBlock, area.height / kBlock);
+  const int columns = scores.width + kBlocks - 1;
+  const int rows = scores.height + kBlocks - 1;
+  products_.create(3 * std::max(rows, products_.rows / 3), std::max(columns, products_.cols));
+  columns_sums_.create(3, std::max(columns, columns_sums_.cols));
+  squared_scores_.create(std::max(scores.height, squared_scores_.rows),
+                         std::max(scores.width, squared_scores_.cols));
   // Column sums over the window's rows are carried on from row to row.
-  columns_sums_.setTo(0.0F);
+  columns_sums_.setTo(0);
   for (int row = 0; row < rows; ++row) {
+    const int y = area.y - kReach + kBlock * row;
+    const int x = area.x - kReach;
+    multiplyGradients(gradients.ptr<short>(y) + 2 * x, gradients.ptr<short>(y + 1) + 2 * x, columns,
+                      products_[3 * row], products_[3 * row + 1], products_[3 * row + 2]);
     for (int k = 0; k < 3; ++k) {
-      const float* const old = row < kWindow ? nullptr : products_[3 * (row - kWindow) + k];
-      carryOn(products_[3 * row + k], old, width, columns_sums_[k]);
+      const int* const old = row < kBlocks ? nullptr : products_[3 * (row - kBlocks) + k];
+      carryOn(products_[3 * row + k], old, columns, columns_sums_[k]);
     }
-    if (row + 1 < kWindow) continue;
-    scoreRow(columns_sums_[0], columns_sums_[1], columns_sums_[2], area.width,
-             squared_scores_[row + 1 - kWindow]);
+    if (row + 1 < kBlocks) continue;
+    scoreRow(columns_sums_[0], columns_sums_[1], columns_sums_[2], scores.width,
+             squared_scores_[row + 1 - kBlocks]);
   }
+  return scores;
 }
 
 Corner CornerGrid::cornerAt(const cv::Rect& area, int row, int column) const {
@@ -198,21 +218,25 @@ Corner CornerGrid::cornerAt(const cv::Rect& area, int row, int column) const {
   const float top = score(0, 0);
   const float dx = parabolaTop(score(0, -1), top, score(0, 1));
   const float dy = parabolaTop(score(-1, 0), top, score(1, 0));
-  return {
-      cv::Point2f(static_cast<float>(area.x + column) + dx, static_cast<float>(area.y + row) + dy),
-      top};
+  const auto place = [](int start, float index) {
+    // A window has as many pixels before its middle as after it.
+    return static_cast<float>(start) + static_cast<float>(kBlock) * index + 0.5F;
+  };
+  return {cv::Point2f(place(area.x, static_cast<float>(column) + dx),
+                      place(area.y, static_cast<float>(row) + dy)),
+          top};
 }
 
 void CornerGrid::searchCell(const cv::Mat& gradients, const cv::Rect& area,
                             std::vector<Corner>* corners) {
-  computeScores(gradients, area);
+  const cv::Size scores = computeScores(gradients, area);
   found_in_cell_.clear();
   const float least = static_cast<float>(options_.quality * options_.quality);
-  for (int row = 1; row + 1 < area.height; ++row) {
+  for (int row = 1; row + 1 < scores.height; ++row) {
     const float* above = squared_scores_[row - 1];
     const float* here = squared_scores_[row];
     const float* below = squared_scores_[row + 1];
-    for (int i = 1; i + 1 < area.width; ++i) {
+    for (int i = 1; i + 1 < scores.width; ++i) {
       const float score = here[i];
       if (score < least || score <= here[i - 1] || score < here[i + 1]) continue;
       const bool is_top = score > above[i - 1] && score > above[i] && score > above[i + 1] &&
@@ -241,12 +265,15 @@ std::vector<Corner> CornerGrid::detect(const cv::Mat& gradients,
   const cv::Rect searchable(margin, margin, size_.width - 2 * margin, size_.height - 2 * margin);
   std::vector<Corner> candidates;
   for (const int cell : cellsToSearch(missing)) {
-    // A pixel more on each side, so that the cell's own edge pixels can be tops.
+    // A score more on each side, so that those at the cell's own edges can be tops.
     const cv::Rect& own = cells_[cell].area;
     const cv::Rect area =
-        cv::Rect(own.x - 1, own.y - 1, own.width + 2, own.height + 2) & searchable;
+        cv::Rect(own.x - kBlock, own.y - kBlock, own.width + 2 * kBlock, own.height + 2 * kBlock) &
+        searchable;
     const std::size_t before = candidates.size();
-    if (area.width > 2 && area.height > 2) searchCell(gradients, area, &candidates);
+    if (area.width >= 3 * kBlock && area.height >= 3 * kBlock) {
+      searchCell(gradients, area, &candidates);
+    }
     if (candidates.size() == before) cells_[cell].rest = kRest;
   }
   std::stable_sort(candidates.begin(), candidates.end(), byScore);

@@ -27,9 +27,10 @@ struct Corner {
 /// corners are still missing: other ones at each call, so that all get their turn. A cell that gave
 /// nothing is left alone for the next three calls: blank walls are not worth the time.
 ///
-/// A pixel's score is the root mean square gradient [grey values/px] in its weakest direction over
-/// 7x7 pixels: the root of the smaller eigenvalue of the structure tensor (J. Shi, C. Tomasi, "Good
-/// features to track", CVPR 1994).
+/// A score is the root mean square gradient [grey values/px] in its weakest direction over 8x8
+/// pixels: the root of the smaller eigenvalue of the structure tensor (J. Shi, C. Tomasi, "Good
+/// features to track", CVPR 1994). It is computed for every second pixel and row; a parabola
+/// through a top and its neighbours gives the corner's place between them.
 class CornerGrid {
  public:
   /// `mask` is CV_8UC1 of the image's size, zero where no corner may be; or empty.
@@ -70,7 +71,7 @@ class CornerGrid {
 
   void countCorners(const std::vector<cv::Point2f>& occupied);
   std::vector<int> cellsToSearch(int missing);
-  void computeScores(const cv::Mat& gradients, const cv::Rect& area);
+  cv::Size computeScores(const cv::Mat& gradients, const cv::Rect& area);
   void searchCell(const cv::Mat& gradients, const cv::Rect& area, std::vector<Corner>* corners);
   Corner cornerAt(const cv::Rect& area, int row, int column) const;
 
@@ -82,8 +83,8 @@ class CornerGrid {
   std::size_t next_cell_ = 0;
   Neighbourhood neighbourhood_;
   // Kept from call to call, so that nothing is allocated for an image.
-  cv::Mat1f products_;  ///< three rows for each row of gradients
-  cv::Mat1f columns_sums_;
+  cv::Mat1i products_;  ///< xx, xy, yy for each row of blocks
+  cv::Mat1i columns_sums_;
   cv::Mat1f squared_scores_;
   std::vector<Corner> found_in_cell_;
 };
