@@ -12,6 +12,7 @@ constexpr int kIterations = 6;
 constexpr float kDone = 0.02F;       // a step that moves less ends the search [px]
 constexpr float kReach = 10.0F;      // of the memory around the image that is used [px]
 constexpr float kStiffness = 0.02F;  // of the warp, as a share of its own equations
+constexpr float kOffset = 64.0F;     // that makes coordinates around the image positive [px]
 constexpr float kFlat = 1e-3F;       // deviation below which there is nothing to see [grey values]
 
 /// Coordinate of a sample in the patch.
@@ -32,24 +33,33 @@ bool AnchoredPatch::isInside(const cv::Mat& image, const cv::Point2f& pixel) con
 }
 
 void AnchoredPatch::sample(const cv::Mat& image, const cv::Point2f& pixel, Samples* samples) const {
-  const std::size_t step = image.step;
-  const std::uint8_t* const origin = image.data;
+  constexpr int kPadded = 16;  // so that the compiler can do four at once, and no rest remains
+  static_assert(kSide <= kPadded);
+  const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(image.step);
   float* out = samples->data();
-  for (int row = 0; row < kSide; ++row) {
+  std::array<float, kPadded> fx, fy, a{}, b{}, c{}, d{}, grey;
+  std::array<int, kPadded> left, top;
+  for (int row = 0; row < kSide; ++row, out += kSide) {
     const float dy = coordinate(row, kSide);
-    float x = pixel.x + warp_(0, 1) * dy + warp_(0, 0) * coordinate(0, kSide);
-    float y = pixel.y + warp_(1, 1) * dy + warp_(1, 0) * coordinate(0, kSide);
-    for (int i = 0; i < kSide; ++i, x += warp_(0, 0), y += warp_(1, 0)) {
+    const float x0 = pixel.x + warp_(0, 1) * dy, y0 = pixel.y + warp_(1, 1) * dy;
+    for (int i = 0; i < kPadded; ++i) {
       // Truncation rounds down: the offset keeps both positive.
-      const int left = static_cast<int>(x + 64.0F) - 64;
-      const int top = static_cast<int>(y + 64.0F) - 64;
-      const float fx = x - static_cast<float>(left);
-      const float fy = y - static_cast<float>(top);
-      const std::uint8_t* p = origin + static_cast<std::ptrdiff_t>(step) * top + left;
-      const float above = p[0] + fx * static_cast<float>(p[1] - p[0]);
-      const float below = p[step] + fx * static_cast<float>(p[step + 1] - p[step]);
-      *out++ = above + fy * (below - above);
+      const float x = x0 + warp_(0, 0) * coordinate(i, kSide) + kOffset;
+      const float y = y0 + warp_(1, 0) * coordinate(i, kSide) + kOffset;
+      left[i] = static_cast<int>(x), top[i] = static_cast<int>(y);
+      fx[i] = x - static_cast<float>(left[i]), fy[i] = y - static_cast<float>(top[i]);
     }
+    for (int i = 0; i < kSide; ++i) {
+      const std::uint8_t* p = image.data + step * (top[i] - static_cast<int>(kOffset)) + left[i] -
+                              static_cast<int>(kOffset);
+      a[i] = p[0], b[i] = p[1], c[i] = p[step], d[i] = p[step + 1];
+    }
+    for (int i = 0; i < kPadded; ++i) {
+      const float above = a[i] + fx[i] * (b[i] - a[i]);
+      const float below = c[i] + fx[i] * (d[i] - c[i]);
+      grey[i] = above + fy[i] * (below - above);
+    }
+    std::copy_n(grey.begin(), kSide, out);
   }
 }
 
