@@ -50,15 +50,39 @@ void addPair(const BearingPair& pair, const RelativeMotion& motion, const Matrix
 
 }  // namespace
 
-double EpipolarMeasure::squaredDistance(const BearingPair& pair) const {
-  const Vector3d normal = t_21_.cross(R_21_ * pair.first);
-  const double fade = kEpipoleRadius * pair.angular_resolution;
-  const double off = pair.second.dot(normal) / pair.angular_resolution;
-  return off * off / (normal.squaredNorm() + fade * fade);
+void EpipolarTable::assign(const std::vector<BearingPair>& pairs) {
+  const Eigen::Index count = static_cast<Eigen::Index>(pairs.size());
+  for (std::size_t k = 0; k < 3; ++k) first_[k].resize(count), second_[k].resize(count);
+  squared_resolution_.resize(count), least_.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const BearingPair& pair = pairs[static_cast<std::size_t>(i)];
+    for (int k = 0; k < 3; ++k) {
+      first_[k][i] = static_cast<float>(pair.first[k]);
+      second_[k][i] = static_cast<float>(pair.second[k]);
+    }
+    const double square = pair.angular_resolution * pair.angular_resolution;
+    squared_resolution_[i] = static_cast<float>(square);
+    least_[i] = static_cast<float>(kEpipoleRadius * kEpipoleRadius * square * square);
+  }
+}
+
+void EpipolarTable::squaredDistances(const RelativeMotion& motion, std::vector<float>* squares) {
+  const Eigen::Matrix3f E = (so3::hat(motion.t_21) * motion.R_21.toRotationMatrix()).cast<float>();
+  squares->resize(static_cast<std::size_t>(least_.size()));
+  for (int k = 0; k < 3; ++k) {
+    normal_[k] = E(k, 0) * first_[0] + E(k, 1) * first_[1] + E(k, 2) * first_[2];
+  }
+  const auto& [x, y, z] = normal_;
+  Eigen::Map<Column>(squares->data(), least_.size()) =
+      (x * second_[0] + y * second_[1] + z * second_[2]).square() /
+      (squared_resolution_ * (x.square() + y.square() + z.square()) + least_);
 }
 
 double epipolarDistance(const BearingPair& pair, const RelativeMotion& motion) {
-  return std::sqrt(EpipolarMeasure(motion).squaredDistance(pair));
+  const Vector3d normal = motion.t_21.cross(motion.R_21 * pair.first);
+  const double fade = kEpipoleRadius * pair.angular_resolution;
+  return std::abs(pair.second.dot(normal)) /
+         (pair.angular_resolution * std::sqrt(normal.squaredNorm() + fade * fade));
 }
 
 double parallax(const BearingPair& pair, const Eigen::Quaterniond& R_21) {

@@ -1,23 +1,28 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "feature_tracker/outlier_rejection.h"
 
 namespace vins {
 
-/// Distances from epipolar planes for one motion and many pairs.
-class EpipolarMeasure {
+/// Distances of many pairs from their epipolar planes, for one motion after the other. Its single
+/// precision is good for a hundredth of a pixel.
+class EpipolarTable {
  public:
-  explicit EpipolarMeasure(const RelativeMotion& motion)
-      : R_21_(motion.R_21.toRotationMatrix()), t_21_(motion.t_21) {}
+  /// Takes other pairs.
+  void assign(const std::vector<BearingPair>& pairs);
 
-  /// Square of epipolarDistance() [px^2].
-  double squaredDistance(const BearingPair& pair) const;
+  /// Squares of epipolarDistance() of all pairs [px^2], in their order.
+  void squaredDistances(const RelativeMotion& motion, std::vector<float>* squares);
 
  private:
-  Eigen::Matrix3d R_21_;
-  Eigen::Vector3d t_21_;
+  // A column for each pair's coordinate or constant, so that several pairs are computed at once.
+  using Column = Eigen::ArrayXf;
+  std::array<Column, 3> first_, second_;
+  Column squared_resolution_, least_;
+  std::array<Column, 3> normal_;  ///< kept from call to call, so that nothing is allocated
 };
 
 /// One least-squares step of a camera's motion on pairs of bearings.

@@ -25,10 +25,10 @@ constexpr double kSharpest = 0.3;          // share of the threshold that all pa
 constexpr double kNoMeasurement = 0.3;     // standard deviation of a guessed rotation [rad]
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-double medianOf(std::vector<double>* values) {
+double medianOf(std::vector<float>* values) {
   const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
   std::nth_element(values->begin(), middle, values->end());
-  return *middle;
+  return static_cast<double>(*middle);
 }
 
 /// Direction on which the parallaxes of two pairs agree, up to its sign.
@@ -58,7 +58,9 @@ struct OutlierRejection::Candidate {
 };
 
 OutlierRejection::OutlierRejection(const OutlierRejectionOptions& options)
-    : options_(options), random_(options.seed) {}
+    : options_(options), random_(options.seed), table_(std::make_unique<EpipolarTable>()) {}
+
+OutlierRejection::~OutlierRejection() = default;
 
 void OutlierRejection::drawSample(std::size_t count, std::size_t size) {
   // Not std::uniform_int_distribution: its numbers differ between standard libraries.
@@ -82,7 +84,7 @@ std::vector<OutlierRejection::Candidate> OutlierRejection::propose(
     if (!directionOfTwo(pairs[sample_[0]], pairs[sample_[1]], search.R_21, &motion.t_21)) continue;
     for (int step = 0; step < search.steps; ++step) stepMotion(pairs, sample_, fit, &motion);
     const double limit = best.size() < kCandidates ? kNoLimit : best.back().cost;
-    const double cost = medianDistance(pairs, motion, limit);
+    const double cost = medianDistance(motion, limit);
     if (cost >= limit) continue;
     if (best.size() == kCandidates) best.pop_back();
     const auto after = std::find_if(best.begin(), best.end(),
@@ -98,7 +100,7 @@ RelativeMotion OutlierRejection::search(const std::vector<BearingPair>& pairs,
   double best_cost = kNoLimit;
   for (const Candidate& candidate : propose(pairs, search)) {
     const RelativeMotion motion = polish(pairs, candidate.motion, search, kFirstSteps);
-    const double cost = medianDistance(pairs, motion, best_cost);
+    const double cost = medianDistance(motion, best_cost);
     if (cost >= best_cost) continue;
     best = motion;
     best_cost = cost;
@@ -116,7 +118,7 @@ RelativeMotion OutlierRejection::polish(const std::vector<BearingPair>& pairs,
   fit.R_prior = search.R_21;
   for (int step = 0; step < steps; ++step) {
     // As wide as the pairs lie now: a rotation that is off must not shut good pairs out.
-    const double sigma = kSigmaOfMedian * medianDistance(pairs, motion, kNoLimit);
+    const double sigma = kSigmaOfMedian * medianDistance(motion, kNoLimit);
     fit.sigma = std::clamp(sigma, kFinest, options_.threshold);
     fit.scale = kScale * fit.sigma;
     stepMotion(pairs, {}, fit, &motion);
@@ -124,18 +126,13 @@ RelativeMotion OutlierRejection::polish(const std::vector<BearingPair>& pairs,
   return motion;
 }
 
-double OutlierRejection::medianDistance(const std::vector<BearingPair>& pairs,
-                                        const RelativeMotion& motion, double limit) {
-  const EpipolarMeasure measure(motion);
-  const double limit_squared = limit * limit;
-  std::size_t beyond = 0;
-  squares_.clear();
-  for (const BearingPair& pair : pairs) {
-    squares_.push_back(measure.squaredDistance(pair));
-    if (squares_.back() < limit_squared) continue;
-    // The median is among them: most motions are not worth more than that.
-    if (2 * ++beyond > pairs.size()) return kNoLimit;
-  }
+double OutlierRejection::medianDistance(const RelativeMotion& motion, double limit) {
+  table_->squaredDistances(motion, &squares_);
+  // Most motions are not worth to look for the median: it is beyond the limit.
+  const float squared_limit = static_cast<float>(limit * limit);
+  std::size_t within = 0;
+  for (const float square : squares_) within += square < squared_limit ? 1 : 0;
+  if (2 * within < squares_.size()) return kNoLimit;
   return std::sqrt(medianOf(&squares_));
 }
 
@@ -143,7 +140,7 @@ RejectionResult OutlierRejection::classify(const std::vector<BearingPair>& pairs
                                            const RelativeMotion& motion) {
   RejectionResult result;
   result.motion = motion;
-  const double sigma = kSigmaOfMedian * medianDistance(pairs, motion, kNoLimit);
+  const double sigma = kSigmaOfMedian * medianDistance(motion, kNoLimit);
   result.threshold =
       std::clamp(kSigmas * sigma, kSharpest * options_.threshold, options_.threshold);
   result.is_inlier.reserve(pairs.size());
@@ -168,6 +165,7 @@ RejectionResult OutlierRejection::reject(const std::vector<BearingPair>& pairs,
     all.motion.R_21 = R_21_measured.value_or(R_21_guess);
     return all;
   }
+  table_->assign(pairs);
   std::optional<RejectionResult> by_gyroscope;
   if (R_21_measured) {
     const MotionSearch near_measured{*R_21_measured, options_.rotation_sigma, 2};

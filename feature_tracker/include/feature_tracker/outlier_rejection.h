@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <random>
 #include <vector>
@@ -34,6 +35,8 @@ double parallax(const BearingPair& pair, const Eigen::Quaterniond& R_21);
 /// The second bearing's distance along the epipolar plane from where a point at infinity would be
 /// [px]: positive for points in front of the camera.
 double displacement(const BearingPair& pair, const RelativeMotion& motion);
+
+class EpipolarTable;
 
 /// What OutlierRejection goes by.
 struct OutlierRejectionOptions {
@@ -72,6 +75,7 @@ struct RejectionResult {
 class OutlierRejection {
  public:
   explicit OutlierRejection(const OutlierRejectionOptions& options);
+  ~OutlierRejection();
 
   /// `R_21_measured`: rotation by the gyroscope, if known. `R_21_guess` is where the search starts
   /// otherwise. Fewer than 6 pairs cannot be judged: all are inliers then. The same calls after
@@ -88,8 +92,8 @@ class OutlierRejection {
   RelativeMotion search(const std::vector<BearingPair>& pairs, const MotionSearch& search);
   RelativeMotion polish(const std::vector<BearingPair>& pairs, RelativeMotion motion,
                         const MotionSearch& search, int steps);
-  double medianDistance(const std::vector<BearingPair>& pairs, const RelativeMotion& motion,
-                        double limit);
+  /// Infinite where it is beyond the limit.
+  double medianDistance(const RelativeMotion& motion, double limit);
   RejectionResult classify(const std::vector<BearingPair>& pairs, const RelativeMotion& motion);
   void drawSample(std::size_t count, std::size_t size);
 
@@ -97,7 +101,8 @@ class OutlierRejection {
   std::mt19937_64 random_;
   // Kept from call to call, so that little is allocated for an image.
   std::vector<std::size_t> sample_;
-  std::vector<double> squares_;
+  std::unique_ptr<EpipolarTable> table_;
+  std::vector<float> squares_;
 };
 
 }  // namespace vins
