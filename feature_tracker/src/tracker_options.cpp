@@ -2,9 +2,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {
@@ -22,14 +21,6 @@ constexpr Range kMaxGap{0.01, 100};
 constexpr Range kMinTracks{0, 5000};
 constexpr Range kSeed{0, 2147483647};
 
-void require(const char* key, double value, const Range& allowed) {
-  if (std::isfinite(value) && value >= allowed.min && value <= allowed.max) return;
-  std::ostringstream message;
-  message << "feature tracker: " << key << " is " << value << "; allowed: " << allowed.min << " to "
-          << allowed.max;
-  throw InputError(message.str());
-}
-
 /// The mask's path, seen from the configuration file's folder.
 std::string maskFile(const Parameters& parameters) {
   const std::string mask = parameters.textOr("fisheye_mask", "");
@@ -41,17 +32,17 @@ std::string maskFile(const Parameters& parameters) {
 }  // namespace
 
 void FeatureTrackerOptions::validate() const {
-  require("max_cnt", max_features, kMaxFeatures);
-  require("min_dist", min_distance, kMinDistance);
-  require("freq", frequency, kFrequency);
-  require("F_threshold", rejection_threshold, kThreshold);
-  require("feature_border", border, kBorder);
-  require("corner_quality", corner_quality, kQuality);
-  require("klt_window", window, kWindow);
-  require("klt_levels", pyramid_levels, kLevels);
-  require("klt_backward", backward_tolerance, kBackward);
-  require("max_image_gap", max_gap, kMaxGap);
-  require("min_tracks", min_tracks, kMinTracks);
+  requireWithin("feature tracker", "max_cnt", max_features, kMaxFeatures);
+  requireWithin("feature tracker", "min_dist", min_distance, kMinDistance);
+  requireWithin("feature tracker", "freq", frequency, kFrequency);
+  requireWithin("feature tracker", "F_threshold", rejection_threshold, kThreshold);
+  requireWithin("feature tracker", "feature_border", border, kBorder);
+  requireWithin("feature tracker", "corner_quality", corner_quality, kQuality);
+  requireWithin("feature tracker", "klt_window", window, kWindow);
+  requireWithin("feature tracker", "klt_levels", pyramid_levels, kLevels);
+  requireWithin("feature tracker", "klt_backward", backward_tolerance, kBackward);
+  requireWithin("feature tracker", "max_image_gap", max_gap, kMaxGap);
+  requireWithin("feature tracker", "min_tracks", min_tracks, kMinTracks);
 }
 
 std::ostream& operator<<(std::ostream& out, const FeatureTrackerOptions& options) {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "option_check.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {

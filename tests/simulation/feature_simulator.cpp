@@ -2,27 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <utility>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins::simulation {
 namespace {
-
-[[noreturn]] void fail(const std::string& name, double value, const std::string& allowed) {
-  std::ostringstream message;
-  message << "simulated features: " << name << " is " << value << "; allowed: " << allowed;
-  throw InputError(message.str());
-}
-
-void require(const std::string& name, double value, double min, double max) {
-  if (value >= min && value <= max) return;
-  std::ostringstream allowed;
-  allowed << min << " to " << max;
-  fail(name, value, allowed.str());
-}
 
 Eigen::Vector3d uniformIn(const Eigen::AlignedBox3d& box, Random* random) {
   const double x = random->uniform(), y = random->uniform(), z = random->uniform();
@@ -77,22 +63,22 @@ struct FeatureSimulator::View {
 };
 
 void FeatureSimulatorOptions::validate() const {
-  require("start", start, 0.0, 1e6);
-  require("duration", duration, 0.0, 1e6);
-  require("image rate", image_rate, 0.1, 1000.0);
-  require("max features", max_features, 0, 10000);
-  require("min distance", min_distance, 0.0, 1000.0);
-  require("border", border, 0.0, 1000.0);
-  require("pixel noise", pixel_noise, 0.0, 100.0);
-  require("loss probability", loss_probability, 0.0, 1.0);
-  require("outlier ratio", outlier_ratio, 0.0, 1.0);
-  require("outlier deviation", outlier_deviation, 0.0, 1000.0);
-  require("landmarks", landmarks, 0, 1000000);
-  require("clutter", clutter, 0.0, 1.0);
-  require("margin", margin, 0.1, 1000.0);
-  require("min depth", min_depth, 0.01, 1000.0);
-  require("moving fraction", moving_fraction, 0.0, 1.0);
-  require("moving amplitude", moving_amplitude, 0.0, 1000.0);
+  requireWithin("simulated features", "start", start, {0.0, 1e6});
+  requireWithin("simulated features", "duration", duration, {0.0, 1e6});
+  requireWithin("simulated features", "image rate", image_rate, {0.1, 1000.0});
+  requireWithin("simulated features", "max features", max_features, {0, 10000});
+  requireWithin("simulated features", "min distance", min_distance, {0.0, 1000.0});
+  requireWithin("simulated features", "border", border, {0.0, 1000.0});
+  requireWithin("simulated features", "pixel noise", pixel_noise, {0.0, 100.0});
+  requireWithin("simulated features", "loss probability", loss_probability, {0.0, 1.0});
+  requireWithin("simulated features", "outlier ratio", outlier_ratio, {0.0, 1.0});
+  requireWithin("simulated features", "outlier deviation", outlier_deviation, {0.0, 1000.0});
+  requireWithin("simulated features", "landmarks", landmarks, {0, 1000000});
+  requireWithin("simulated features", "clutter", clutter, {0.0, 1.0});
+  requireWithin("simulated features", "margin", margin, {0.1, 1000.0});
+  requireWithin("simulated features", "min depth", min_depth, {0.01, 1000.0});
+  requireWithin("simulated features", "moving fraction", moving_fraction, {0.0, 1.0});
+  requireWithin("simulated features", "moving amplitude", moving_amplitude, {0.0, 1000.0});
 }
 
 std::ostream& operator<<(std::ostream& out, const FeatureSimulatorOptions& options) {

@@ -1,11 +1,10 @@
 #include "simulation/imu_simulator.h"
 
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "simulation/random.h"
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins::simulation {
 namespace {
@@ -64,23 +63,19 @@ ImuSample idealSample(const TrajectorySpline& trajectory, double t, double gravi
   return sample;
 }
 
-[[noreturn]] void fail(const std::string& name, double value, const std::string& allowed) {
-  std::ostringstream message;
-  message << "simulated IMU: " << name << " is " << value << "; allowed: " << allowed;
-  throw InputError(message.str());
-}
-
 void requireAtLeastZero(const std::string& name, double value) {
-  if (!std::isfinite(value) || value < 0.0) fail(name, value, "a number of at least 0");
+  if (!std::isfinite(value) || value < 0.0)
+    refuseOption("simulated IMU", name, value, "a number of at least 0");
 }
 
 }  // namespace
 
 void ImuOptions::validate() const {
-  if (!(rate >= 1.0 && rate <= 1e5)) fail("rate", rate, "1 to 100000 Hz");
-  if (!(std::abs(time_offset) <= 1.0)) fail("time offset", time_offset, "-1 to 1 s");
+  if (!(rate >= 1.0 && rate <= 1e5)) refuseOption("simulated IMU", "rate", rate, "1 to 100000 Hz");
+  if (!(std::abs(time_offset) <= 1.0))
+    refuseOption("simulated IMU", "time offset", time_offset, "-1 to 1 s");
   if (!initial_accelerometer_bias.allFinite() || !initial_gyroscope_bias.allFinite()) {
-    fail("initial bias", NAN, "finite numbers");
+    refuseOption("simulated IMU", "initial bias", NAN, "finite numbers");
   }
   noise.validate();
   for (const Vibration& vibration : vibrations) {

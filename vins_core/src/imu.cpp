@@ -1,32 +1,25 @@
 #include "vins_core/imu.h"
 
-#include <cmath>
-#include <sstream>
-
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
-namespace {
 
-void requirePositive(const char* key, double value) {
-  if (std::isfinite(value) && value > 0.0) return;
-  std::ostringstream message;
-  message << "IMU noise: " << key << " is " << value << "; allowed: a number above 0";
-  throw InputError(message.str());
+ImuSample interpolate(const ImuSample& from, const ImuSample& to, Stamp stamp) {
+  const double share = toSeconds(stamp - from.stamp) / toSeconds(to.stamp - from.stamp);
+  ImuSample sample;
+  sample.stamp = stamp;
+  sample.acceleration = (1.0 - share) * from.acceleration + share * to.acceleration;
+  sample.angular_velocity = (1.0 - share) * from.angular_velocity + share * to.angular_velocity;
+  return sample;
 }
 
-}  // namespace
-
 void ImuNoise::validate() const {
-  requirePositive("acc_n", accelerometer_noise);
-  requirePositive("gyr_n", gyroscope_noise);
-  requirePositive("acc_w", accelerometer_walk);
-  requirePositive("gyr_w", gyroscope_walk);
-  requirePositive("g_norm", gravity);
-  if (!(vibration_share >= 0.0 && vibration_share <= 1.0)) {
-    throw InputError("IMU noise: vibration_share is " + std::to_string(vibration_share) +
-                     "; allowed: 0 to 1");
-  }
+  requirePositive("IMU noise", "acc_n", accelerometer_noise);
+  requirePositive("IMU noise", "gyr_n", gyroscope_noise);
+  requirePositive("IMU noise", "acc_w", accelerometer_walk);
+  requirePositive("IMU noise", "gyr_w", gyroscope_walk);
+  requirePositive("IMU noise", "g_norm", gravity);
+  requireWithin("IMU noise", "vibration_share", vibration_share, {0.0, 1.0});
 }
 
 std::ostream& operator<<(std::ostream& out, const ImuNoise& noise) {

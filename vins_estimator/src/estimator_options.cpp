@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {
@@ -26,14 +27,6 @@ constexpr Range kHeight{16, 20000};
 constexpr Range kSigma{1e-6, 3.0};
 constexpr double kSampleAbove = 0.03;  ///< no density of a usable accelerometer is [m/s^2/sqrt(Hz)]
 constexpr double kNotOrthogonal = 1e-2;  ///< of R^T R - 1: typed numbers with few digits pass
-
-void require(const char* key, double value, const Range& allowed) {
-  if (value >= allowed.min && value <= allowed.max) return;
-  std::ostringstream message;
-  message << "estimator: " << key << " is " << value << "; allowed: " << allowed.min << " to "
-          << allowed.max;
-  throw InputError(message.str());
-}
 
 bool isRotation(const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d difference = R.transpose() * R - Eigen::Matrix3d::Identity();
@@ -173,18 +166,19 @@ void EstimatorOptions::validate() const {
   if (!T_bc.position.allFinite() || !(std::abs(T_bc.rotation.norm() - 1.0) < 1e-6)) {
     throw InputError("estimator: T_bc is no pose; allowed: finite numbers, a unit quaternion");
   }
-  require("td", td, kTimeOffset);
-  require("pixel_noise", pixel_noise, kPixelNoise);
-  require("window_size", window_size, kWindowSize);
-  require("keyframe_parallax", keyframe_parallax, kParallax);
-  require("min_tracks", min_tracks, kMinTracks);
-  require("max_num_iterations", max_num_iterations, kIterations);
-  require("max_solver_time", max_solver_time, kSolverTime);
-  require("rolling_shutter_tr", rolling_shutter_readout, kReadout);
-  if (rolling_shutter_readout > 0.0) require("image_height", image_height, kHeight);
-  require("extrinsic_rotation_sigma", extrinsic_rotation_sigma, kSigma);
-  require("extrinsic_translation_sigma", extrinsic_translation_sigma, kSigma);
-  require("td_sigma", td_sigma, kSigma);
+  requireWithin("estimator", "td", td, kTimeOffset);
+  requireWithin("estimator", "pixel_noise", pixel_noise, kPixelNoise);
+  requireWithin("estimator", "window_size", window_size, kWindowSize);
+  requireWithin("estimator", "keyframe_parallax", keyframe_parallax, kParallax);
+  requireWithin("estimator", "min_tracks", min_tracks, kMinTracks);
+  requireWithin("estimator", "max_num_iterations", max_num_iterations, kIterations);
+  requireWithin("estimator", "max_solver_time", max_solver_time, kSolverTime);
+  requireWithin("estimator", "rolling_shutter_tr", rolling_shutter_readout, kReadout);
+  if (rolling_shutter_readout > 0.0)
+    requireWithin("estimator", "image_height", image_height, kHeight);
+  requireWithin("estimator", "extrinsic_rotation_sigma", extrinsic_rotation_sigma, kSigma);
+  requireWithin("estimator", "extrinsic_translation_sigma", extrinsic_translation_sigma, kSigma);
+  requireWithin("estimator", "td_sigma", td_sigma, kSigma);
 }
 
 std::ostream& operator<<(std::ostream& out, const EstimatorOptions& options) {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "option_check.h"
 #include "pose_graph/graph/heading.h"
 #include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {

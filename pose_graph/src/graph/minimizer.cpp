@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "option_check.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {

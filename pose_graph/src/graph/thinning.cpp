@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "option_check.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "option_check.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 

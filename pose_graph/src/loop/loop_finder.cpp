@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "option_check.h"
+#include "vins_core/option_check.h"
 #include "vins_core/wall_clock.h"
 
 namespace vins {

@@ -5,7 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "option_check.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "option_check.h"
 #include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {

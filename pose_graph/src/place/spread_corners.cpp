@@ -7,8 +7,8 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "option_check.h"
 #include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "option_check.h"
 #include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {

@@ -18,6 +18,9 @@ struct ImuSample {
   bool isFinite() const { return acceleration.allFinite() && angular_velocity.allFinite(); }
 };
 
+/// The reading at `stamp` on the straight line between two, whose stamps differ.
+ImuSample interpolate(const ImuSample& from, const ImuSample& to, Stamp stamp);
+
 /// Estimated biases of the inertial sensor with their covariances, in the body frame.
 struct ImuBiasEstimate {
   Stamp stamp = 0;                                                     ///< [ns]

@@ -1,11 +1,10 @@
 #include "vins_estimator/health/failure_detector.h"
 
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/so3.h"
 
 namespace vins {
@@ -18,12 +17,7 @@ void FailureDetectorOptions::validate() const {
       {"max_jump", max_jump},
       {"max_turn", max_turn},
       {"max_velocity_sigma", max_velocity_sigma}};
-  for (const auto& [name, value] : values) {
-    if (value > 0.0) continue;
-    std::ostringstream message;
-    message << "failure detector: " << name << " is " << value << "; allowed: above 0";
-    throw InputError(message.str());
-  }
+  for (const auto& [name, value] : values) requirePositive("failure detector", name, value);
 }
 
 std::optional<Failure> detectFailure(const FailureDetectorOptions& options,

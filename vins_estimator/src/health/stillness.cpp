@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <string>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/time.h"
 
 namespace vins {
@@ -14,13 +13,6 @@ namespace {
 
 using Eigen::Array3d;
 using Eigen::Vector3d;
-
-void requirePositive(const std::string& name, double value) {
-  if (std::isfinite(value) && value > 0.0) return;
-  std::ostringstream message;
-  message << "stillness: " << name << " is " << value << "; allowed: a positive number";
-  throw InputError(message.str());
-}
 
 /// Sum, sum of squares and number of vectors.
 class Moments {
@@ -107,19 +99,18 @@ double median(std::vector<double>* values) {
 }  // namespace
 
 void StillnessOptions::validate() const {
-  requirePositive("window", window);
-  requirePositive("block", block);
-  requirePositive("max_acceleration", max_acceleration);
-  requirePositive("max_angular_velocity", max_angular_velocity);
-  requirePositive("max_vibration", max_vibration);
-  requirePositive("max_turn_rate", max_turn_rate);
-  requirePositive("max_gravity_error", max_gravity_error);
-  requirePositive("gravity", gravity);
-  requirePositive("max_image_motion", max_image_motion);
-  requirePositive("min_features", min_features);
+  requirePositive("stillness", "window", window);
+  requirePositive("stillness", "block", block);
+  requirePositive("stillness", "max_acceleration", max_acceleration);
+  requirePositive("stillness", "max_angular_velocity", max_angular_velocity);
+  requirePositive("stillness", "max_vibration", max_vibration);
+  requirePositive("stillness", "max_turn_rate", max_turn_rate);
+  requirePositive("stillness", "max_gravity_error", max_gravity_error);
+  requirePositive("stillness", "gravity", gravity);
+  requirePositive("stillness", "max_image_motion", max_image_motion);
+  requirePositive("stillness", "min_features", min_features);
   if (min_frames < 4) {
-    throw InputError("stillness: min_frames is " + std::to_string(min_frames) +
-                     "; allowed: at least 4");
+    refuseOption("stillness", "min_frames", min_frames, "at least 4");
   }
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {
@@ -14,35 +14,18 @@ namespace {
 constexpr std::size_t kPeriods = 50;      ///< measured before their median is taken
 constexpr std::size_t kFirstPeriods = 5;  ///< the same for the first time
 
-void require(const char* name, double value, double min, double max) {
-  if (value >= min && value <= max) return;
-  std::ostringstream message;
-  message << "measurement queue: " << name << " is " << value << "; allowed: " << min << " to "
-          << max;
-  throw InputError(message.str());
-}
-
-ImuSample interpolate(const ImuSample& from, const ImuSample& to, Stamp stamp) {
-  const double share = toSeconds(stamp - from.stamp) / toSeconds(to.stamp - from.stamp);
-  ImuSample sample;
-  sample.stamp = stamp;
-  sample.acceleration = (1.0 - share) * from.acceleration + share * to.acceleration;
-  sample.angular_velocity = (1.0 - share) * from.angular_velocity + share * to.angular_velocity;
-  return sample;
-}
-
 bool isBefore(const ImuSample& sample, Stamp stamp) { return sample.stamp < stamp; }
 
 }  // namespace
 
 void MeasurementQueueOptions::validate() const {
-  require("max_frames", max_frames, 0, 1e6);
-  require("imu_rate", imu_rate, 1.0, 1e5);
-  require("gap_periods", gap_periods, 1.1, 1e3);
-  require("lead_in", lead_in, 0.0, 60.0);
-  require("max_jump", max_jump, 0.01, 1e6);
-  require("max_lead", max_lead, 0.1, 1e6);
-  require("event_interval", event_interval, 0.0, 1e6);
+  requireWithin("measurement queue", "max_frames", max_frames, {0, 1e6});
+  requireWithin("measurement queue", "imu_rate", imu_rate, {1.0, 1e5});
+  requireWithin("measurement queue", "gap_periods", gap_periods, {1.1, 1e3});
+  requireWithin("measurement queue", "lead_in", lead_in, {0.0, 60.0});
+  requireWithin("measurement queue", "max_jump", max_jump, {0.01, 1e6});
+  requireWithin("measurement queue", "max_lead", max_lead, {0.1, 1e6});
+  requireWithin("measurement queue", "event_interval", event_interval, {0.0, 1e6});
 }
 
 MeasurementQueue::MeasurementQueue(const MeasurementQueueOptions& options)

@@ -65,15 +65,6 @@ Preintegration::MissedMotion missedMotion(double dt, int steps) {
   return {steps * std::pow(share * kAcceleration, 2), steps * std::pow(share * kTurnRate, 2)};
 }
 
-/// A reading on the straight line between two.
-ImuSample between(const ImuSample& from, const ImuSample& to, double share) {
-  ImuSample sample;
-  sample.stamp = from.stamp + toNanoseconds(share * toSeconds(to.stamp - from.stamp));
-  sample.acceleration = (1.0 - share) * from.acceleration + share * to.acceleration;
-  sample.angular_velocity = (1.0 - share) * from.angular_velocity + share * to.angular_velocity;
-  return sample;
-}
-
 /// What the noise of one step adds. White noise of density s acts as one error of variance
 /// s^2 / dt, constant over the step: the sum over many steps then has the variance s^2 t that the
 /// density says. (Two half-errors, one a reading, would be counted as independent in neighbouring
@@ -171,7 +162,8 @@ void Preintegration::bridge(const ImuSample& from, const ImuSample& to, const Im
   const MissedMotion missed = missedMotion(dt, steps);
   ImuSample last = from;
   for (int k = 1; k <= steps; ++k) {
-    const ImuSample next = k < steps ? between(from, to, static_cast<double>(k) / steps) : to;
+    const Stamp stamp = from.stamp + toNanoseconds(dt * k / steps);
+    const ImuSample next = k < steps ? interpolate(from, to, stamp) : to;
     step(last, next, noise, missed);
     last = next;
   }

@@ -1,8 +1,6 @@
 #include "vins_estimator/inertial/propagator.h"
 
-#include <sstream>
-
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/so3.h"
 
 namespace vins {
@@ -13,10 +11,7 @@ constexpr std::size_t kMaxSamples = 20000;  ///< waiting for a state, whatever t
 }  // namespace
 
 void PropagatorOptions::validate() const {
-  if (max_horizon > 0.0 && max_horizon <= 3600.0) return;
-  std::ostringstream message;
-  message << "propagator: max_horizon is " << max_horizon << "; allowed: above 0, up to 3600 s";
-  throw InputError(message.str());
+  requireWithin("propagator", "max_horizon", max_horizon, {1e-3, 3600.0});
 }
 
 Propagator::Propagator(const ImuNoise& noise, const PropagatorOptions& options)

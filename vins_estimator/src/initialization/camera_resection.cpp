@@ -1,12 +1,11 @@
 #include "vins_estimator/initialization/camera_resection.h"
 
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include <Eigen/Cholesky>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/so3.h"
 #include "vins_estimator/factors/bearing_factor.h"
 
@@ -99,20 +98,15 @@ Pose minimize(const std::vector<PointSighting>& sightings, const Pose& start,
   return T_sc;
 }
 
-void fail(const std::string& name, double value, const std::string& allowed) {
-  std::ostringstream message;
-  message << "resection: " << name << " is " << value << "; allowed: " << allowed;
-  throw InputError(message.str());
-}
-
 }  // namespace
 
 void ResectionOptions::validate() const {
-  if (min_points < 4) fail("min_points", min_points, "at least 4");
-  if (!(min_inliers > 0.0 && min_inliers <= 1.0)) fail("min_inliers", min_inliers, "above 0 to 1");
-  if (!(inlier_gate > 0.0)) fail("inlier_gate", inlier_gate, "a positive number");
-  if (!(robust > 0.0)) fail("robust", robust, "a positive number");
-  if (max_iterations < 1) fail("max_iterations", max_iterations, "at least 1");
+  if (min_points < 4) refuseOption("resection", "min_points", min_points, "at least 4");
+  if (!(min_inliers > 0.0 && min_inliers <= 1.0))
+    refuseOption("resection", "min_inliers", min_inliers, "above 0 to 1");
+  requirePositive("resection", "inlier_gate", inlier_gate);
+  requirePositive("resection", "robust", robust);
+  if (max_iterations < 1) refuseOption("resection", "max_iterations", max_iterations, "at least 1");
 }
 
 std::optional<Pose> resectCamera(const std::vector<PointSighting>& sightings, const Pose& start,

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <unordered_set>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/time.h"
 
 namespace vins {
@@ -14,12 +13,6 @@ namespace {
 constexpr double kShorterSpan = 0.7;  ///< of the next shorter span that is tried
 constexpr int kSpansTried = 2;        ///< in one attempt
 constexpr double kJitter = 0.01;      ///< of camera periods [s]
-
-void fail(const std::string& name, double value, const std::string& allowed) {
-  std::ostringstream message;
-  message << "initialization: " << name << " is " << value << "; allowed: " << allowed;
-  throw InputError(message.str());
-}
 
 InitializerOptions checked(InitializerOptions options) {
   options.stillness.gravity = options.imu.gravity;
@@ -38,10 +31,10 @@ void InitializerOptions::validate() const {
                                                      {"report_interval", report_interval},
                                                      {"max_gap", max_gap}};
   for (const auto& [name, value] : positive) {
-    if (!(std::isfinite(value) && value > 0.0)) fail(name, value, "a positive number");
+    requirePositive("initialization", name, value);
   }
-  if (max_frames < 5) fail("max_frames", max_frames, "at least 5");
-  if (min_span > max_span) fail("min_span", min_span, "at most max_span");
+  if (max_frames < 5) refuseOption("initialization", "max_frames", max_frames, "at least 5");
+  if (min_span > max_span) refuseOption("initialization", "min_span", min_span, "at most max_span");
   stillness.validate();
   at_rest.validate();
   structure.validate();

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include <Eigen/SparseCholesky>
@@ -12,7 +11,7 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_estimator/factors/imu_factor.h"
 #include "vins_estimator/factors/parameter_blocks.h"
 #include "vins_estimator/factors/prior_factor.h"
@@ -190,12 +189,7 @@ void JointRefinementOptions::validate() const {
       {"yaw_sigma", yaw_sigma},
       {"outlier_gate", outlier_gate},
       {"max_iterations", max_iterations}};
-  for (const auto& [name, value] : positive) {
-    if (std::isfinite(value) && value > 0.0) continue;
-    std::ostringstream message;
-    message << "joint refinement: " << name << " is " << value << "; allowed: a positive number";
-    throw InputError(message.str());
-  }
+  for (const auto& [name, value] : positive) requirePositive("joint refinement", name, value);
 }
 
 JointRefinement refineJointly(const JointRefinementOptions& options, JointProblem* problem) {

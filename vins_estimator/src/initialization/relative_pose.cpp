@@ -5,13 +5,12 @@
 #include <cmath>
 #include <optional>
 #include <random>
-#include <sstream>
 #include <string>
 
 #include <Eigen/Cholesky>
 #include <Eigen/SVD>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/so3.h"
 #include "vins_estimator/factors/bearing_factor.h"
 #include "vins_estimator/initialization/five_point.h"
@@ -241,20 +240,17 @@ std::vector<RelativePose> Ransac::run() {
   return found;
 }
 
-void fail(const std::string& name, double value, const std::string& allowed) {
-  std::ostringstream message;
-  message << "relative pose: " << name << " is " << value << "; allowed: " << allowed;
-  throw InputError(message.str());
-}
-
 }  // namespace
 
 void RelativePoseOptions::validate() const {
-  if (!(inlier_gate > 0.0)) fail("inlier_gate", inlier_gate, "a positive number");
-  if (!(min_inliers > 0.0 && min_inliers <= 1.0)) fail("min_inliers", min_inliers, "above 0 to 1");
-  if (max_iterations < 1) fail("max_iterations", max_iterations, "at least 1");
-  if (!(confidence > 0.0 && confidence < 1.0)) fail("confidence", confidence, "between 0 and 1");
-  if (refinements < 0) fail("refinements", refinements, "at least 0");
+  requirePositive("relative pose", "inlier_gate", inlier_gate);
+  if (!(min_inliers > 0.0 && min_inliers <= 1.0))
+    refuseOption("relative pose", "min_inliers", min_inliers, "above 0 to 1");
+  if (max_iterations < 1)
+    refuseOption("relative pose", "max_iterations", max_iterations, "at least 1");
+  if (!(confidence > 0.0 && confidence < 1.0))
+    refuseOption("relative pose", "confidence", confidence, "between 0 and 1");
+  if (refinements < 0) refuseOption("relative pose", "refinements", refinements, "at least 0");
 }
 
 double epipolarResidual(const Matrix3d& E, const BearingPair& pair) {

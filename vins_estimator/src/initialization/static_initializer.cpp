@@ -2,25 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include <Eigen/Geometry>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/time.h"
 
 namespace vins {
 namespace {
 
 using Eigen::Vector3d;
-
-void requirePositive(const std::string& name, double value) {
-  if (std::isfinite(value) && value > 0.0) return;
-  std::ostringstream message;
-  message << "start at rest: " << name << " is " << value << "; allowed: a positive number";
-  throw InputError(message.str());
-}
 
 /// What the samples of a still interval say.
 struct RestMeasurement {
@@ -82,15 +74,14 @@ Vector15d sigmaAtRest(const RestMeasurement& rest, const StaticInitializerOption
 
 void StaticInitializerOptions::validate() const {
   if (frames < 2) {
-    throw InputError("start at rest: frames is " + std::to_string(frames) +
-                     "; allowed: at least 2");
+    refuseOption("start at rest", "frames", frames, "at least 2");
   }
-  requirePositive("position_sigma", position_sigma);
-  requirePositive("tilt_sigma", tilt_sigma);
-  requirePositive("yaw_sigma", yaw_sigma);
-  requirePositive("velocity_sigma", velocity_sigma);
-  requirePositive("accelerometer_bias_sigma", accelerometer_bias_sigma);
-  requirePositive("min_gyroscope_bias_sigma", min_gyroscope_bias_sigma);
+  requirePositive("start at rest", "position_sigma", position_sigma);
+  requirePositive("start at rest", "tilt_sigma", tilt_sigma);
+  requirePositive("start at rest", "yaw_sigma", yaw_sigma);
+  requirePositive("start at rest", "velocity_sigma", velocity_sigma);
+  requirePositive("start at rest", "accelerometer_bias_sigma", accelerometer_bias_sigma);
+  requirePositive("start at rest", "min_gyroscope_bias_sigma", min_gyroscope_bias_sigma);
 }
 
 Eigen::Quaterniond levelRotation(const Vector3d& up_b) {

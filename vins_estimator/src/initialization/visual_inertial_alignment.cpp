@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/so3.h"
 #include "vins_estimator/initialization/static_initializer.h"
 
@@ -129,12 +128,7 @@ void AlignmentOptions::validate() const {
       {"max_imu_chi2", max_imu_chi2},
       {"max_speed", max_speed},
       {"min_landmarks", min_landmarks}};
-  for (const auto& [name, value] : positive) {
-    if (std::isfinite(value) && value > 0.0) continue;
-    std::ostringstream message;
-    message << "alignment: " << name << " is " << value << "; allowed: a positive number";
-    throw InputError(message.str());
-  }
+  for (const auto& [name, value] : positive) requirePositive("alignment", name, value);
   joint.validate();
 }
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/time.h"
 #include "vins_estimator/initialization/structure_adjustment.h"
 #include "vins_estimator/visual/triangulation.h"
@@ -253,12 +252,6 @@ VisualStructure StructureBuilder::build() {
   return std::move(result_);
 }
 
-void fail(const std::string& name, double value, const std::string& allowed) {
-  std::ostringstream message;
-  message << "visual structure: " << name << " is " << value << "; allowed: " << allowed;
-  throw InputError(message.str());
-}
-
 }  // namespace
 
 void VisualStructureOptions::validate() const {
@@ -274,7 +267,7 @@ void VisualStructureOptions::validate() const {
                                                      {"min_landmarks", min_landmarks},
                                                      {"max_iterations", max_iterations}};
   for (const auto& [name, value] : positive) {
-    if (!(std::isfinite(value) && value > 0.0)) fail(name, value, "a positive number");
+    requirePositive("visual structure", name, value);
   }
   relative_pose.validate();
   resection.validate();

@@ -3,25 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <string>
 
 #include <Eigen/Cholesky>
 
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 
 namespace vins {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-void requirePositive(const std::string& name, double value) {
-  if (std::isfinite(value) && value > 0.0) return;
-  std::ostringstream message;
-  message << "triangulation: " << name << " is " << value << "; allowed: a positive number";
-  throw InputError(message.str());
-}
 
 /// Cosine of the largest angle between two of the unit rays.
 double smallestCosine(const std::vector<TriangulationView>& views) {
@@ -152,11 +144,11 @@ TriangulationStatus judge(const Triangulation& result, const TriangulationOption
 }  // namespace
 
 void TriangulationOptions::validate() const {
-  requirePositive("min_parallax", min_parallax);
-  requirePositive("max_rms", max_rms);
-  requirePositive("min_distance", min_distance);
-  requirePositive("max_distance", max_distance);
-  requirePositive("max_iterations", max_iterations);
+  requirePositive("triangulation", "min_parallax", min_parallax);
+  requirePositive("triangulation", "max_rms", max_rms);
+  requirePositive("triangulation", "min_distance", min_distance);
+  requirePositive("triangulation", "max_distance", max_distance);
+  requirePositive("triangulation", "max_iterations", max_iterations);
 }
 
 const char* toString(TriangulationStatus status) {
