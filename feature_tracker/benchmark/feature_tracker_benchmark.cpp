@@ -7,17 +7,16 @@
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <iostream>
 #include <numeric>
 
 #include <benchmark/benchmark.h>
 #include <opencv2/imgcodecs.hpp>
-#include <unistd.h>
 
 #include "feature_tracker/feature_tracker.h"
 #include "feature_tracker/track_drawing.h"
 #include "image_sequence.h"
+#include "vins_core/resident_memory.h"
 
 namespace {
 
@@ -126,14 +125,6 @@ struct TrackBook {
   }
 };
 
-/// Memory of this process in RAM [MB].
-double residentMegabytes() {
-  std::ifstream in("/proc/self/statm");
-  double pages = 0.0;
-  in >> pages >> pages;
-  return pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
-}
-
 void drawIfAsked(const ImageSequence& sequence, std::size_t i, const vins::FeatureFrame& frame) {
   const char* path = std::getenv("VINS_TRACK_PICTURE");
   if (path == nullptr) return;
@@ -187,14 +178,14 @@ void memoryOverALongRun(benchmark::State& state) {
     constexpr std::size_t kImages = 4000;
     double half_way = 0.0;
     for (std::size_t i = 0; i < kImages; ++i) {
-      if (i == kImages / 2) half_way = residentMegabytes();
+      if (i == kImages / 2) half_way = vins::residentMegabytes();
       // To and fro, so that there is no jump where the images begin again.
       const std::size_t turn = i % (2 * images.size() - 2);
       const std::size_t k = turn < images.size() ? turn : 2 * images.size() - 2 - turn;
       tracker.track({images[k]}, 50'000'000 * static_cast<vins::Stamp>(i + 1), {});
     }
     state.counters["rss_MB"] = half_way;
-    state.counters["growth_MB"] = residentMegabytes() - half_way;
+    state.counters["growth_MB"] = vins::residentMegabytes() - half_way;
   }
 }
 
