@@ -90,4 +90,11 @@ TimeInterval parseInterval(const std::string& option, const std::string& text) {
   return {begin, begin + duration};
 }
 
+std::vector<TimeInterval> parseIntervals(const std::string& option,
+                                         const std::vector<std::string>& texts) {
+  std::vector<TimeInterval> intervals;
+  for (const std::string& text : texts) intervals.push_back(parseInterval(option, text));
+  return intervals;
+}
+
 }  // namespace vins::simulation

@@ -59,4 +59,8 @@ bool contains(const std::vector<TimeInterval>& intervals, double t_s);
 /// Interval of "START:DURATION" [s]. Throws InputError naming `option` where it is none.
 TimeInterval parseInterval(const std::string& option, const std::string& text);
 
+/// The same for each of the texts.
+std::vector<TimeInterval> parseIntervals(const std::string& option,
+                                         const std::vector<std::string>& texts);
+
 }  // namespace vins::simulation

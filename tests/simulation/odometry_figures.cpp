@@ -117,7 +117,7 @@ void addTo(Consistency* sum, const Consistency& c) {
   sum->gyroscope_bias += c.gyroscope_bias;
 }
 
-/// NEES and drift, sequence by sequence.
+/// NEES and drift, from the gauge pose on.
 void judgeByGauge(const OdometryRun& run, OdometryFigures* figures) {
   Pose T_estimate_truth;
   int covered = 0;

@@ -17,7 +17,7 @@
 
 namespace vins::simulation {
 
-/// The pose that holds the world of a sequence: the oldest of its first window.
+/// The pose that holds the world: the oldest of the first window.
 struct Gauge {
   Pose estimate;
   Pose truth;
@@ -27,7 +27,7 @@ struct Gauge {
 struct OdometrySample {
   Odometry estimate;
   NavState truth;
-  std::optional<Gauge> gauge;  ///< with the first sample of a sequence
+  std::optional<Gauge> gauge;  ///< with the first sample
 };
 
 /// What the estimator made of a flight.
@@ -35,8 +35,9 @@ struct OdometryRun {
   std::uint64_t seed = 0;
   Stamp begin = 0;  ///< of the first frame [ns]
   std::size_t frames = 0;
-  std::vector<OdometrySample> samples;  ///< one for each odometry
+  std::vector<OdometrySample> samples;  ///< one for each odometry, or fewer as asked for
   std::vector<double> frame_seconds;    ///< work of the estimator on each frame [s]
+  std::vector<double> megabytes;        ///< resident memory after each minute of the flight
   std::vector<Event> events;
   RigCalibration rig;                          ///< as last estimated
   RigCalibration true_rig;                     ///< as simulated
@@ -94,7 +95,7 @@ Pose alignPositionAndYaw(const Pose& estimated, const Pose& truth);
 std::optional<double> scaleError(const std::vector<Eigen::Vector3d>& estimated,
                                  const std::vector<Eigen::Vector3d>& truth);
 
-/// For the NEES, gauge poses are laid onto the truth by position and yaw; for the ATE, all
+/// For the NEES, the gauge pose is laid onto the truth by position and yaw; for the ATE, all
 /// positions are.
 OdometryFigures evaluate(const OdometryRun& run);
 

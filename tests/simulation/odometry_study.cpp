@@ -16,6 +16,7 @@
 #include "simulation/random.h"
 #include "simulation/spline_fit.h"
 #include "vins_core/input_error.h"
+#include "vins_core/resident_memory.h"
 #include "vins_core/trajectory_file.h"
 #include "vins_estimator/estimator.h"
 
@@ -84,9 +85,13 @@ EstimatorOptions estimatorOptions(const OdometryStudyOptions& options, std::uint
 class Flight {
  public:
   Flight(const OdometryStudyOptions& options, std::uint64_t seed)
-      : motion_(makeMotion(options, seed)),
+      : keep_every_(std::max<std::size_t>(1, options.keep_every)),
+        motion_(makeMotion(options, seed)),
         imu_(makeImu(options, motion_, seed)),
         offset_(toNanoseconds(options.time_offset)),
+        blackouts_(options.blackouts),
+        samples_(withFaults(imu_.samples, motion_.epoch() + toNanoseconds(options.features.start),
+                            options.imu_faults)),
         estimator_(estimatorOptions(options, seed)),
         features_(motion_, eurocCamera(0), options.T_bc, withSeed(options.features, seed)) {
     run_.seed = seed;
@@ -94,16 +99,21 @@ class Flight {
   }
 
   OdometryRun fly() {
-    while (const auto frame = features_.next()) {
+    while (auto frame = features_.next()) {
       if (run_.frames++ == 0) run_.begin = frame->stamp;
+      const double seconds = toSeconds(frame->stamp - run_.begin);
+      if (contains(blackouts_, seconds)) frame->observations.clear();
       const auto start = std::chrono::steady_clock::now();
       addSamplesUpTo(frame->stamp);
       estimator_.addFrame(*frame);
       work();
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       run_.frame_seconds.push_back(elapsed.count());
+      if (seconds >= 60.0 * (1.0 + static_cast<double>(run_.megabytes.size()))) {
+        run_.megabytes.push_back(residentMegabytes());
+      }
     }
-    addSamplesUpTo(imu_.samples.back().stamp);
+    addSamplesUpTo(samples_.back().arrival);
     work();
     return std::move(run_);
   }
@@ -115,9 +125,9 @@ class Flight {
   }
 
   void addSamplesUpTo(Stamp stamp) {
-    for (; next_sample_ < imu_.samples.size(); ++next_sample_) {
-      if (imu_.samples[next_sample_].stamp > stamp) return;
-      estimator_.addImu(imu_.samples[next_sample_]);
+    for (; next_sample_ < samples_.size(); ++next_sample_) {
+      if (samples_[next_sample_].arrival > stamp) return;
+      estimator_.addImu(samples_[next_sample_].sample);
     }
   }
 
@@ -126,14 +136,14 @@ class Flight {
       run_.rig = result->rig;
       run_.rig_covariance = result->rig_covariance;
       run_.events.insert(run_.events.end(), result->events.begin(), result->events.end());
-      if (result->odometry) keep(*result);
+      if (result->odometry && odometries_++ % keep_every_ == 0) keep(*result);
     }
   }
 
   void keep(const EstimatorResult& result) {
     OdometrySample sample{*result.odometry, truthAt(result.odometry->stamp), std::nullopt};
-    const bool is_first =
-        run_.samples.empty() || run_.samples.back().estimate.sequence != sample.estimate.sequence;
+    // After a reset the odometry goes on where it was, and its covariance tells how well.
+    const bool is_first = run_.samples.empty();
     if (is_first && result.window.empty()) {
       sample.gauge = Gauge{sample.estimate.state.T_wb, sample.truth.T_wb};
     } else if (is_first) {
@@ -152,9 +162,13 @@ class Flight {
     return {motion.T_wb, motion.velocity_w, bias.accelerometer, bias.gyroscope};
   }
 
+  std::size_t keep_every_;
+  std::size_t odometries_ = 0;
   TrajectorySpline motion_;
   ImuRecording imu_;
   Stamp offset_;
+  std::vector<TimeInterval> blackouts_;
+  std::vector<ArrivedSample> samples_;
   Estimator estimator_;
   FeatureSimulator features_;
   std::size_t next_sample_ = 0;

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "simulation/faults.h"
 #include "simulation/feature_simulator.h"
 #include "simulation/odometry_figures.h"
 #include "vins_estimator/estimator_options.h"
@@ -21,6 +24,9 @@ struct OdometryStudyOptions {
   double time_offset = 0.0;              ///< the true td [s]
   Pose T_bc;                             ///< the true one; EuRoC's
   FeatureSimulatorOptions features;      ///< start and duration are the flight's; the seed is not
+  std::vector<TimeInterval> blackouts;   ///< frames without features, from the flight's start on
+  ImuFaults imu_faults;                  ///< from the flight's start on
+  std::size_t keep_every = 1;            ///< of so many odometry samples one is kept
   EstimatorOptions estimator;            ///< T_bc and td as the estimator is told; EuRoC's and 0.
                                          ///< IMU and pixel noise are those simulated
 

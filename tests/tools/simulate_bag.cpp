@@ -99,9 +99,8 @@ po::options_description describeOptions() {
 void readIntervals(const po::variables_map& values, const std::string& option,
                    std::vector<sim::TimeInterval>* intervals) {
   if (values.count(option) == 0) return;
-  for (const std::string& text : values[option].as<Texts>()) {
-    intervals->push_back(sim::parseInterval("--" + option, text));
-  }
+  const auto more = sim::parseIntervals("--" + option, values[option].as<Texts>());
+  intervals->insert(intervals->end(), more.begin(), more.end());
 }
 
 sim::Faults readFaults(const po::variables_map& values) {

@@ -1,5 +1,6 @@
 // Follows simulated flights with the estimator, at the level of features: many seeds in a minute.
 
+#include <iomanip>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ namespace po = boost::program_options;
 namespace sim = vins::simulation;
 
 namespace {
+
+using Texts = std::vector<std::string>;
 
 template <typename T>
 po::typed_value<T>* withDefault(const T& value) {
@@ -36,6 +39,7 @@ void addFlightOptions(po::options_description* options) {
   add("seeds", withDefault(1), "how many flights");
   add("first-seed", withDefault<std::uint64_t>(1), "of the first flight; the next has the next");
   add("json", withDefault<std::string>(""), "file to write all figures to");
+  add("keep-every", withDefault<std::size_t>(1), "of so many poses one is judged");
   add("events", po::bool_switch(), "print the estimator's events");
 }
 
@@ -52,6 +56,10 @@ void addSensorOptions(po::options_description* options) {
   add("loss", withDefault(features.loss_probability), "of a track, per frame");
   add("outliers", withDefault(features.outlier_ratio), "share of observations");
   add("moving", withDefault(features.moving_fraction), "share of landmarks that swing");
+  add("blackout", po::value<Texts>()->composing()->default_value({}, ""),
+      "START:DURATION [s] without features; repeatable");
+  add("imu-gap", po::value<Texts>()->composing()->default_value({}, ""),
+      "START:DURATION [s] without IMU samples");
 }
 
 void addEstimatorOptions(po::options_description* options) {
@@ -94,6 +102,9 @@ sim::OdometryStudyOptions readOptions(const po::variables_map& values) {
   options.features.loss_probability = values["loss"].as<double>();
   options.features.outlier_ratio = values["outliers"].as<double>();
   options.features.moving_fraction = values["moving"].as<double>();
+  options.keep_every = values["keep-every"].as<std::size_t>();
+  options.blackouts = sim::parseIntervals("--blackout", values["blackout"].as<Texts>());
+  options.imu_faults.gaps = sim::parseIntervals("--imu-gap", values["imu-gap"].as<Texts>());
   options.estimator.window_size = values["window-size"].as<int>();
   options.estimator.keyframe_parallax = values["keyframe-parallax"].as<double>();
   options.estimator.max_num_iterations = values["max-num-iterations"].as<int>();
@@ -113,6 +124,12 @@ sim::OdometryStudyOptions readOptions(const po::variables_map& values) {
   return options;
 }
 
+void printMemory(const sim::OdometryRun& run) {
+  std::cout << "memory after each minute [MB]:" << std::fixed << std::setprecision(1);
+  for (const double megabytes : run.megabytes) std::cout << " " << megabytes;
+  std::cout << std::defaultfloat << "\n";
+}
+
 /// Flies all seeds; true where all were initialised.
 bool study(const po::variables_map& values) {
   const sim::OdometryStudyOptions options = readOptions(values);
@@ -126,6 +143,7 @@ bool study(const po::variables_map& values) {
     if (values["events"].as<bool>()) {
       for (const vins::Event& event : run.events) std::cout << event << "\n";
     }
+    if (!run.megabytes.empty()) printMemory(run);
     figures.push_back(sim::evaluate(run));
     all_initialised = all_initialised && figures.back().initialised;
     bar.update(i + 1);
