@@ -85,13 +85,13 @@ class VinsStatus(unittest.TestCase):
 
     def test_a_stage_that_warns(self):
         self.stages.estimator_level = DiagnosticStatus.WARN
-        result = run_tool('--timeout', '15')
+        result = run_tool('--timeout', '8')
         self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
         self.assertIn('estimator: move sideways', result.stdout)
 
     def test_an_estimator_that_hands_out_nothing(self):
         self.stages.plays_odometry = False
-        result = run_tool('--timeout', '15')
+        result = run_tool('--timeout', '8')
         self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
         self.assertIn('/vins_estimator/odometry: nothing comes', result.stdout)
 
