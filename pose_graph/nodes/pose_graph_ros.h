@@ -61,7 +61,7 @@ class PoseGraphRos {
   PoseGraphPublisher publisher_;
   PictureStore pictures_;
   KeyframeNumbering numbering_;  // the worker's alone
-  std::uint32_t sequence_ = 0;  // of the newest keyframe
+  std::uint32_t sequence_ = 0;   // of the newest keyframe
 
   std::mutex mutex_;  // of all below
   std::condition_variable arrived_;

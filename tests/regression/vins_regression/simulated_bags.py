@@ -22,8 +22,8 @@ SimulatedBag = collections.namedtuple("SimulatedBag", "bag rig ground_truth")
 
 # Comes back to its start after 30 s and sees it again for 4 s, in which loops are found.
 LOOP = ("loop", ["--trajectory", "hall_loop", "--duration", "34"])
-# The faults of --faults at shorter distances: two gaps in the IMU's samples, one that is bridged
-# (50 ms) and one that is not trusted (200 ms), a second without light, four images left out.
+# The graver faults of --faults at shorter distances: two gaps in the IMU's samples (50 and 200 ms),
+# a second without light, four images left out.
 FAULTS = ("faults", ["--trajectory", "hall_loop", "--duration", "25", "--imu-gap", "8:0.05",
                      "--imu-gap", "11:0.2", "--blackout", "15:1", "--drop-frames", "20:0.2"])
 
