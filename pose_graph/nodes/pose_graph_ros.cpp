@@ -84,8 +84,9 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node)
   diagnostics_.add("pose graph", this, &PoseGraphRos::report);
   timer_ = node.createTimer(ros::Duration(1.0),
                             [this](const ros::TimerEvent&) { diagnostics_.update(); });
-  worker_ = std::thread([this] { work(); });
   subscribe(node, parameters.text("image_topic"));
+  // Last: what has thrown must not leave a thread behind.
+  worker_ = std::thread([this] { work(); });
 }
 
 PoseGraphRos::~PoseGraphRos() {
