@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""EuRoC's MH_01 as it was flown, where it is there: take-off from the ground and a flight of 19 m."""
+"""EuRoC's MH_01 as it was flown, where it is there: take-off and a flight of 19 m."""
 
 import os
 

@@ -1,34 +1,16 @@
 """A test case with the three nodes, a player and a listener."""
 
-import os
-import shutil
-import unittest
-
 import rospy
 
-from vins_regression import files, processes
+from vins_regression import processes
 from vins_regression.listener import Listener
+from vins_regression.processes_case import ProcessCase
 
 FRAME_NS = 50000000  # of cameras at 20 Hz
 
 
-class LiveCase(unittest.TestCase):
-    """Starts what a test asks for, and ends all of it after the test."""
-
-    def setUp(self):
-        self.processes = []
-        self.folder = files.work_folder()
-        self.addCleanup(self._end)
-
-    def _end(self):
-        for process in self.processes:
-            process.kill()
-        shutil.rmtree(self.folder, ignore_errors=True)
-
-    def started(self, process):
-        """Takes a Process into the case's care."""
-        self.processes.append(process)
-        return process
+class LiveCase(ProcessCase):
+    """Starts the live system as a test asks for it."""
 
     def start_nodes(self, rig, **more):
         """Starts the three nodes.
@@ -75,18 +57,6 @@ class LiveCase(unittest.TestCase):
             lambda: listener.odometry and listener.odometry[-1].stamp >= stamp, timeout)
         self.assertTrue(came, "no odometry at %.3f s:\n%s" % (1e-9 * stamp, self.said()))
 
-    def assert_ends(self, process, within=2.0, code=0):
-        """Ctrl-C ends the process within seconds, with an exit code."""
-        took = process.interrupt(10.0)
-        self.assertIsNotNone(took, "%s still runs 10 s after Ctrl-C" % process.name)
-        self.assertLess(took, within, process.name)
-        self.assertEqual(process.exit_code, code, process.output())
-
-    def said(self):
-        """What the processes have said, for a failure's message."""
-        return "\n".join("--- %s (%s)\n%s" % (process.name, process.exit_code, process.output())
-                         for process in self.processes)
-
     def listen(self):
         """A Listener that ends with the test."""
         listener = Listener()
@@ -95,12 +65,7 @@ class LiveCase(unittest.TestCase):
 
 
 def run(name, case):
-    """Runs a rostest's case and ends the program as rostest expects it."""
+    """Runs the case of a rostest and ends the program as rostest expects it."""
     import rostest  # only here: it takes over the command line
     rospy.init_node(name, disable_signals=True)
     rostest.rosrun("vins_tests", name, case)
-
-
-def exists(path):
-    """Whether a file is there and not empty."""
-    return os.path.isfile(path) and os.path.getsize(path) > 0
