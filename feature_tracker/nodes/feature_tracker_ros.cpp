@@ -32,8 +32,9 @@ FeatureTrackerRos::FeatureTrackerRos(const ros::NodeHandle& handle,
   cv::setNumThreads(1);
   readConfiguration();
   advertise();
-  worker_ = std::thread([this] { work(); });
   subscribe();
+  // Last: what has thrown must not leave a thread behind.
+  worker_ = std::thread([this] { work(); });
 }
 
 FeatureTrackerRos::~FeatureTrackerRos() {

@@ -84,8 +84,9 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node)
   diagnostics_.add("pose graph", this, &PoseGraphRos::report);
   timer_ = node.createTimer(ros::Duration(1.0),
                             [this](const ros::TimerEvent&) { diagnostics_.update(); });
-  worker_ = std::thread([this] { work(); });
   subscribe(node, parameters.text("image_topic"));
+  // Last: what has thrown must not leave a thread behind.
+  worker_ = std::thread([this] { work(); });
 }
 
 PoseGraphRos::~PoseGraphRos() {
@@ -160,7 +161,8 @@ void PoseGraphRos::work() {
   }
 }
 
-void PoseGraphRos::handle(const Keyframe& keyframe) {
+void PoseGraphRos::handle(Keyframe keyframe) {
+  if (numbering_.take(&keyframe)) ROS_WARN("the estimator has been started again");
   cv::Mat image;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -169,7 +171,11 @@ void PoseGraphRos::handle(const Keyframe& keyframe) {
   }
   const PoseGraphResult result = graph_->addKeyframe(keyframe, image);
   sequence_ = keyframe.sequence;
-  if (result.match && configuration_.refines_in_window) publisher_.publish(*result.match);
+  if (result.match && configuration_.refines_in_window) {
+    LoopMatch match = *result.match;
+    numbering_.giveBack(&match);
+    publisher_.publish(match);
+  }
   hear(result.events);
   if (result.is_kept) showLoop(keyframe, image, result);
   publisher_.publishPaths(graph_.get(), result.match.has_value());
@@ -185,7 +191,15 @@ void PoseGraphRos::showLoop(const Keyframe& keyframe, const cv::Mat& image,
                             graph_->draw(result.search.checked.back(), image, old_image));
 }
 
-void PoseGraphRos::handle(const LoopEdge& edge) { hear(graph_->addLoopEdge(edge).events); }
+void PoseGraphRos::handle(KeyframePoseUpdate update) {
+  numbering_.take(&update);
+  graph_->update(update);
+}
+
+void PoseGraphRos::handle(LoopEdge edge) {
+  numbering_.take(&edge);
+  hear(graph_->addLoopEdge(edge).events);
+}
 
 void PoseGraphRos::handle(const nav_msgs::Odometry& odometry) {
   publisher_.publish(odometry, graph_->drift(sequence_).value_or(Pose()));

@@ -15,6 +15,7 @@
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>
 
+#include "keyframe_numbering.h"
 #include "picture_store.h"
 #include "pose_graph/place/recent_images.h"
 #include "pose_graph/pose_graph.h"
@@ -47,9 +48,9 @@ class PoseGraphRos {
   void onImage(const sensor_msgs::Image::ConstPtr& message);
   void push(Input input);
   void work();
-  void handle(const Keyframe& keyframe);
-  void handle(const KeyframePoseUpdate& update) { graph_->update(update); }
-  void handle(const LoopEdge& edge);
+  void handle(Keyframe keyframe);
+  void handle(KeyframePoseUpdate update);
+  void handle(LoopEdge edge);
   void handle(const nav_msgs::Odometry& odometry);
   void showLoop(const Keyframe& keyframe, const cv::Mat& image, const PoseGraphResult& result);
   void hear(const std::vector<Event>& events);
@@ -59,7 +60,8 @@ class PoseGraphRos {
   std::unique_ptr<PoseGraph> graph_;  // the worker's alone
   PoseGraphPublisher publisher_;
   PictureStore pictures_;
-  std::uint32_t sequence_ = 0;  // of the newest keyframe
+  KeyframeNumbering numbering_;  // the worker's alone
+  std::uint32_t sequence_ = 0;   // of the newest keyframe
 
   std::mutex mutex_;  // of all below
   std::condition_variable arrived_;

@@ -43,8 +43,8 @@ TEST(SupportFiles, PatternIsWhatTheToolMakes) {
 TEST(SupportFiles, ToolSaysWhatIsWrong) {
   EXPECT_EQ(runMakeBriefPattern("--help"), 0);
   EXPECT_EQ(runMakeBriefPattern(""), 1);
-  EXPECT_EQ(runMakeBriefPattern("-o /nowhere/pattern.yml"), 1);
-  EXPECT_EQ(runMakeBriefPattern("-o /nowhere/pattern.yml --patch 3"), 1);
+  EXPECT_EQ(runMakeBriefPattern("-o /dev/null/pattern.yml"), 1);
+  EXPECT_EQ(runMakeBriefPattern("-o /dev/null/pattern.yml --patch 3"), 1);
 }
 
 TEST(SupportFiles, VocabularyTellsImagesApart) {

@@ -12,6 +12,7 @@
 #include "simulation/builtin_trajectories.h"
 #include "simulation/recording_simulator.h"
 #include "vins_core/input_error.h"
+#include "vins_core/interrupt.h"
 #include "vins_core/progress_bar.h"
 #include "vins_core/text_file.h"
 #include "vins_core/trajectory_file.h"
@@ -24,6 +25,8 @@ namespace po = boost::program_options;
 namespace sim = vins::simulation;
 
 namespace {
+
+enum ExitCode { kDone = 0, kBadInput = 1, kInterrupted = 130 };
 
 using Texts = std::vector<std::string>;
 
@@ -183,18 +186,20 @@ void write(const sim::SimulatedRecording& recording, const vins::ScheduledMessag
   }
 }
 
-void writeBag(const sim::SimulatedRecording& recording, const std::string& path) {
+/// False where it was interrupted.
+bool writeMessages(const sim::SimulatedRecording& recording, vins::Interrupt* interrupt,
+                   vins::BagWriter* bag) {
   const auto messages = scheduleOf(recording);
   const std::size_t image_count = recording.image_stamps.size() * recording.cameras.size();
-  vins::BagWriter bag(path);
   auto bar = vins::ProgressBar::onStandardError("rendering", image_count);
   std::size_t images = 0;
   for (const vins::ScheduledMessage& message : messages) {
-    write(recording, message, &bag);
+    if (interrupt->isRequested()) return false;
+    write(recording, message, bag);
     if (message.stream >= kCamera0) bar.update(++images);
   }
-  bag.finish();
   bar.finish();
+  return true;
 }
 
 /// Ground truth, biases and the rig, as text files beside the bag. The true rig has a file of its
@@ -217,18 +222,29 @@ void writeTexts(const sim::SimulatedRecording& recording, const std::string& ste
   }
 }
 
-void simulate(const po::variables_map& values) {
+ExitCode simulate(const po::variables_map& values) {
   const fs::path bag = values["output"].as<std::string>();
   const auto start = std::chrono::steady_clock::now();
   const sim::SimulatedRecording recording = sim::simulateRecording(readOptions(values));
   std::cout << recording.description << std::flush;
-  writeBag(recording, bag.string());
   const std::string stem = (bag.parent_path() / bag.stem()).string();
-  writeTexts(recording, stem);
+  {
+    // Before the renderer's threads are made, which take over what is held back.
+    vins::Interrupt interrupt;
+    vins::BagWriter writer(bag.string());
+    if (!writeMessages(recording, &interrupt, &writer)) {
+      std::cerr << "\nsimulate_bag: interrupted; " << bag.string() << " was not written\n";
+      return kInterrupted;
+    }
+    // The bag comes last: where it is, all of it is.
+    writeTexts(recording, stem);
+    writer.finish();
+  }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   std::cout << "written: " << bag.string() << ", " << static_cast<double>(fs::file_size(bag)) / 1e6
             << " MB, " << recording.ground_truth.duration() << " s of flight in " << elapsed.count()
             << " s; " << stem << "_groundtruth.txt, " << stem << "_rig.yaml beside it\n";
+  return kDone;
 }
 
 }  // namespace
@@ -239,19 +255,21 @@ int main(int argc, char** argv) {
     po::variables_map values;
     po::store(po::parse_command_line(argc, argv, options), values);
     if (values.count("help") > 0) {
-      std::cout << "Simulates a recording of a camera-IMU rig, with ground truth, as a ROS bag.\n"
-                   "Example: simulate_bag -o hall.bag --trajectory hall_loop --duration 60\n"
-                   "Beside hall.bag: hall_groundtruth.txt, hall_imu_biases.txt, hall_rig.yaml.\n\n"
-                << options;
-      return 0;
+      std::cout
+          << "Simulates a recording of a camera-IMU rig, with ground truth, as a ROS bag.\n"
+             "Example: simulate_bag -o hall.bag --trajectory hall_loop --duration 60\n"
+             "Beside hall.bag: hall_groundtruth.txt, hall_imu_biases.txt, hall_rig.yaml.\n\n"
+          << options
+          << "\nExit code: 0 written, 1 bad input or no room, 130 interrupted: then nothing is "
+             "written.\n";
+      return kDone;
     }
     po::notify(values);
-    simulate(values);
-    return 0;
+    return simulate(values);
   } catch (const po::error& error) {
     std::cerr << "simulate_bag: " << error.what() << "; see --help\n";
   } catch (const std::exception& error) {
     std::cerr << "simulate_bag: " << error.what() << "\n";
   }
-  return 1;
+  return kBadInput;
 }

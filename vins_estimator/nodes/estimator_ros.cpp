@@ -105,7 +105,9 @@ void EstimatorRos::onImu(const sensor_msgs::Imu::ConstPtr& message) {
 void EstimatorRos::onFeatures(const vins_msgs::FeatureFrame::ConstPtr& message) {
   Input input;
   input.frame = tryFromMsg(*message);
-  if (input.frame) push(std::move(input));
+  if (!input.frame) return;
+  if (numbering_.take(&*input.frame)) ROS_WARN("the feature tracker has been started again");
+  push(std::move(input));
 }
 
 void EstimatorRos::onLoopMatch(const vins_msgs::LoopMatch::ConstPtr& message) {

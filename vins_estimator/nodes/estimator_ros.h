@@ -2,9 +2,9 @@
 
 #include <condition_variable>
 #include <deque>
-#include <optional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -15,6 +15,7 @@
 #include <std_srvs/Trigger.h>
 
 #include "estimator_publisher.h"
+#include "feature_numbering.h"
 #include "vins_estimator/estimator.h"
 #include "vins_estimator/inertial/propagator.h"
 #include "vins_msgs/FeatureFrame.h"
@@ -62,6 +63,7 @@ class EstimatorRos {
   EstimatorOptions options_;
   Estimator estimator_;  // the worker's alone
   EstimatorPublisher publisher_;
+  FeatureNumbering numbering_;  // of the features' callback
 
   std::mutex propagator_mutex_;
   Propagator propagator_;

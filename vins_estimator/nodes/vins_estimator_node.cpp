@@ -1,17 +1,8 @@
-#include <exception>
-
-#include <ros/ros.h>
+// A node of its own: see EstimatorRos for topics and parameters.
 
 #include "estimator_ros.h"
+#include "vins_msgs/node_main.h"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "vins_estimator");
-  try {
-    vins::EstimatorRos estimator(ros::NodeHandle(), ros::NodeHandle("~"));
-    ros::spin();
-  } catch (const std::exception& error) {
-    ROS_FATAL_STREAM(error.what());
-    return 1;
-  }
-  return 0;
+  return vins_msgs::runNode<vins::EstimatorRos>(argc, argv, "vins_estimator");
 }

@@ -80,7 +80,7 @@ TEST(BagWriter, RefusesBadStampsImagesAndPlaces) {
   EXPECT_THROW(bag.writeImu(0, ImuSample()), InputError);
   EXPECT_THROW(bag.writeImage(topic::kCamera0, 1, 1, cv::Mat()), InputError);
   EXPECT_THROW(bag.writeImage(topic::kCamera0, 1, 1, cv::Mat(2, 2, CV_8UC3)), InputError);
-  EXPECT_THROW(BagWriter("/no/such/folder/x.bag"), InputError);
+  EXPECT_THROW(BagWriter("/dev/null/x.bag"), InputError);
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST_F(PlaceTools, SayWhatIsWrong) {
   for (const std::string& arguments :
        {std::string(), path("images") + out, path("missing") + kPattern + out,
         path("images/0.png") + kPattern + out, path("images") + kPattern + "--k 1" + out,
-        path("images") + kPattern + "-o /nowhere/a.voc"}) {
+        path("images") + kPattern + "-o /dev/null/a.voc"}) {
     const Outcome outcome = run("train_vocabulary", arguments);
     EXPECT_EQ(outcome.exit_code, 1) << arguments;
     EXPECT_NE(outcome.output.find("train_vocabulary: "), std::string::npos) << outcome.output;

@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "vins_core/input_error.h"
+#include "vins_core/interrupt.h"
 #include "vins_core/progress_bar.h"
 #include "vins_pipeline/asl_folder.h"
 #include "vins_pipeline/bag_writer.h"
@@ -73,13 +74,21 @@ void describe(const vins::AslRecording& recording) {
   }
 }
 
-void convert(const std::string& folder, const std::string& bag_path, vins::MissingImages missing) {
+enum ExitCode { kDone = 0, kBadInput = 1, kInterrupted = 130 };
+
+ExitCode convert(const std::string& folder, const std::string& bag_path,
+                 vins::MissingImages missing) {
   const vins::AslRecording recording = vins::readAslFolder(folder, missing);
   describe(recording);
   const auto messages = scheduleOf(recording);
+  vins::Interrupt interrupt;
   vins::BagWriter bag(bag_path);
   auto bar = vins::ProgressBar::onStandardError("writing " + bag_path, messages.size());
   for (std::size_t i = 0; i < messages.size(); ++i) {
+    if (interrupt.isRequested()) {
+      std::cerr << "\nasl_to_bag: interrupted; " << bag_path << " was not written\n";
+      return kInterrupted;
+    }
     write(recording, messages[i], &bag);
     bar.update(i + 1);
   }
@@ -88,6 +97,7 @@ void convert(const std::string& folder, const std::string& bag_path, vins::Missi
   const auto megabytes = static_cast<double>(std::filesystem::file_size(bag_path)) / 1e6;
   std::cout << "written: " << bag_path << ", " << messages.size() << " messages, " << megabytes
             << " MB\n";
+  return kDone;
 }
 
 po::options_description describeOptions() {
@@ -122,16 +132,15 @@ int main(int argc, char** argv) {
     po::variables_map values;
     po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
               values);
-    if (printedHelp(values, options)) return 0;
+    if (printedHelp(values, options)) return kDone;
     po::notify(values);
-    convert(values["folder"].as<std::string>(), values["bag"].as<std::string>(),
-            values["skip-missing-images"].as<bool>() ? vins::MissingImages::kSkip
-                                                     : vins::MissingImages::kRefuse);
-    return 0;
+    return convert(values["folder"].as<std::string>(), values["bag"].as<std::string>(),
+                   values["skip-missing-images"].as<bool>() ? vins::MissingImages::kSkip
+                                                            : vins::MissingImages::kRefuse);
   } catch (const po::error& error) {
     std::cerr << "asl_to_bag: " << error.what() << "; see --help\n";
   } catch (const std::exception& error) {
     std::cerr << "asl_to_bag: " << error.what() << "\n";
   }
-  return 1;
+  return kBadInput;
 }

@@ -9,6 +9,7 @@
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
 
+#include "vins_core/folder.h"
 #include "vins_core/input_error.h"
 #include "vins_msgs/conversions.h"
 
@@ -24,16 +25,23 @@ class BagWriter::Bag {
 };
 
 BagWriter::BagWriter(const std::string& path) : path_(path) {
+  makeFolderOf(path_);
   try {
     bag_ = std::make_unique<Bag>(path_ + ".part");
   } catch (const rosbag::BagException& error) {
+    std::remove((path_ + ".part").c_str());
     throw InputError(path_ + ": cannot be written: " + error.what());
   }
 }
 
 BagWriter::~BagWriter() {
   if (!bag_) return;
-  bag_.reset();
+  try {
+    bag_->bag.close();
+  } catch (const rosbag::BagException&) {
+    // On a full disk. rosbag's destructor would close it once more, throw, and end the program.
+    static_cast<void>(bag_.release());
+  }
   std::remove((path_ + ".part").c_str());
 }
 

@@ -15,10 +15,11 @@
 #include <boost/program_options.hpp>
 #include <opencv2/core.hpp>
 
-#include "interrupt.h"
 #include "support_files.h"
 #include "trajectory_report.h"
+#include "vins_core/folder.h"
 #include "vins_core/input_error.h"
+#include "vins_core/interrupt.h"
 #include "vins_core/progress_bar.h"
 #include "vins_core/text_file.h"
 #include "vins_core/trajectory_file.h"
@@ -253,14 +254,6 @@ void printSummary(const Run& run, const fs::path& folder) {
             << run.record.timingTable();
 }
 
-void makeFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error && fs::is_directory(folder)) return;
-  throw vins::InputError(folder.string() + ": cannot be made: " +
-                         (error ? error.message() : std::string("a file of that name is there")));
-}
-
 void report(const po::variables_map& values, const fs::path& folder, const Run& run) {
   const std::string truth = prepareTruth(values["ground-truth"].as<std::string>(), folder, run);
   if (truth.empty() || run.results.odometries() == 0) return;
@@ -293,7 +286,7 @@ int runBag(const po::variables_map& values) {
       vins::openRecording(values["bag"].as<std::string>(), selectionOf(values, run.options));
   run.reached = run.recording->summary().begin;
   const fs::path folder = values["out"].as<std::string>();
-  makeFolder(folder);
+  vins::makeFolder(folder.string());
   {
     // Until the files are written, nothing ends the program half-way.
     vins::Interrupt interrupt;

@@ -20,9 +20,9 @@ constexpr char kGroundTruth[] = "/ground_truth/pose";
 }  // namespace topic
 
 /// Writes a recording as a ROS bag. It is written aside (FILE.part) and renamed by finish(), so
-/// that no half-written bag is left behind. The same calls give the same bytes. Every function
-/// throws InputError naming the file where it cannot be written, and for stamps that ROS has no
-/// time for (below 1 ns, from 2106 on).
+/// that no half-written bag is left behind; its folder is made where it is missing. The same calls
+/// give the same bytes. Every function throws InputError naming the file where it cannot be
+/// written, and for stamps that ROS has no time for (below 1 ns, from 2106 on).
 class BagWriter {
  public:
   explicit BagWriter(const std::string& path);

@@ -1,0 +1,109 @@
+"""Figures of run_bag on a fixed set of recordings, beside those of a baseline."""
+
+import collections
+import json
+import os
+
+# A figure's key, heading, format, and what is clearly worse than the baseline: run_bag gives the
+# same bytes on every run, so each difference is the code's (or another processor's arithmetic).
+Figure = collections.namedtuple("Figure", "key heading format is_worse tolerance")
+
+FIGURES = (
+    Figure("ate_m", "odometry: ATE [m]", "%.3f",
+           lambda now, before: now > 1.25 * before + 0.01, "a quarter and 1 cm more"),
+    Figure("loop_ate_m", "with loops: ATE [m]", "%.3f",
+           lambda now, before: now > 1.25 * before + 0.01, "a quarter and 1 cm more"),
+    Figure("scale_error_percent", "scale error [%]", "%+.2f",
+           lambda now, before: abs(now) > abs(before) + 0.3, "0.3 points more"),
+    Figure("initialised_s", "initialised after [s]", "%.1f",
+           lambda now, before: now > before + 1.0, "1 s later"),
+    Figure("completeness_percent", "completeness [%]", "%.1f",
+           lambda now, before: now < before - 2.0, "2 points less"),
+    Figure("frame_ms", "CPU a frame [ms]", "%.1f",
+           lambda now, before: now > 1.5 * before + 2.0, "half and 2 ms more"),
+    Figure("loops", "loops", "%d",
+           lambda now, before: now < 0.75 * before - 1.0, "a quarter and one less"),
+)
+
+
+def read_run(folder):
+    """The figures of a folder that run_bag has written.
+
+    Returns:
+        {Figure.key: number}; None for what is not known, as where it never initialised.
+    """
+    figures = {figure.key: None for figure in FIGURES}
+    with open(os.path.join(folder, "events.csv"), encoding="utf-8") as file:
+        figures["loops"] = sum(",loop_found," in line for line in file)
+    stage = _json(folder, "timing.json")["stages"].get("tracker+estimator")
+    if stage:
+        figures["frame_ms"] = round(1e3 * stage["cpu_seconds"] / stage["count"], 2)
+    if not os.path.exists(os.path.join(folder, "evaluation.json")):
+        return figures
+    estimates = {estimate["name"]: estimate
+                 for estimate in _json(folder, "evaluation.json")["estimates"]}
+    live = estimates["vio_live"]
+    figures["ate_m"] = round(live["ate_m"]["rmse"], 4)
+    figures["loop_ate_m"] = round(estimates["loop_final"]["ate_m"]["rmse"], 4)
+    figures["scale_error_percent"] = round(live["scale_error_percent"], 3)
+    figures["initialised_s"] = round(live["first_pose_after_s"], 2)
+    figures["completeness_percent"] = round(live["completeness_percent"], 2)
+    return figures
+
+
+def _json(folder, name):
+    with open(os.path.join(folder, name), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def worse(now, before):
+    """The Figures in which a run is clearly worse than the baseline's.
+
+    Args:
+        now, before: {Figure.key: number or None}. A figure that is lost is worse; one that the
+            baseline does not have is not.
+    """
+    return [figure for figure in FIGURES
+            if before.get(figure.key) is not None
+            and (now.get(figure.key) is None
+                 or figure.is_worse(now[figure.key], before[figure.key]))]
+
+
+def text_table(rows):
+    """Lines for the terminal: each figure as it is, as it was, and a mark where it is worse.
+
+    Args:
+        rows: list of (name, now or None, before or None).
+    """
+    lines = []
+    for name, now, before in rows:
+        lines.append(name)
+        if now is None:
+            lines.append("  not run: its recording is not here (VINS_SHARED_DATA)")
+            continue
+        bad = worse(now, before or {})
+        for figure in FIGURES:
+            lines.append("  %-24s%10s   baseline%10s%s" % (
+                figure.heading, _shown(figure, now), _shown(figure, before or {}),
+                "   WORSE" if figure in bad else ""))
+    return "\n".join(lines) + "\n"
+
+
+def markdown_table(baseline, descriptions):
+    """The baseline for docs/results.md.
+
+    Args:
+        baseline: {name: figures}; descriptions: {name: what the recording is}.
+    """
+    lines = ["| recording | " + " | ".join(figure.heading for figure in FIGURES) + " |",
+             "|---" * (len(FIGURES) + 1) + "|"]
+    for name, text in descriptions.items():
+        if name in baseline:
+            cells = [_shown(figure, baseline[name]) for figure in FIGURES]
+            lines.append("| %s | %s |" % (text, " | ".join(cells)))
+    return "\n".join(lines) + "\n"
+
+
+def _shown(figure, figures):
+    value = figures.get(figure.key)
+    return "-" if value is None else figure.format % value

@@ -1,0 +1,43 @@
+"""Messages turned into what is judged: stamps in nanoseconds, poses as arrays."""
+
+import collections
+import struct
+
+import numpy as np
+
+# A pose with its covariance, (6, 6) of position and rotation; quaternion x y z w.
+StampedPose = collections.namedtuple(
+    "StampedPose", "stamp arrival frame child position quaternion covariance")
+Told = collections.namedtuple("Told", "stamp code text figures")
+
+
+def stamp_of(header):
+    """Nanoseconds."""
+    return header.stamp.secs * 1000000000 + header.stamp.nsecs
+
+
+def pose_of(message, arrival):
+    """StampedPose of a nav_msgs/Odometry that arrived at a time (seconds)."""
+    pose = message.pose.pose
+    return StampedPose(
+        stamp_of(message.header), arrival, message.header.frame_id, message.child_frame_id,
+        (pose.position.x, pose.position.y, pose.position.z),
+        (pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w),
+        np.array(message.pose.covariance).reshape(6, 6))
+
+
+def told(message):
+    """Told of a vins_msgs/Event."""
+    return Told(stamp_of(message.header), message.code, message.text,
+                dict(zip(message.figure_names, message.figure_values)))
+
+
+def frame_number(message):
+    """Stamp and sequence of a vins_msgs/FeatureFrame that came as AnyMsg.
+
+    Its hundreds of observations are left packed: unpacking them all would take the time of the
+    nodes under test.
+    """
+    _, seconds, nanoseconds, length = struct.unpack_from("<4I", message._buff)
+    sequence, = struct.unpack_from("<I", message._buff, 16 + length)
+    return seconds * 1000000000 + nanoseconds, sequence
