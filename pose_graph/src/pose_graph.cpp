@@ -29,6 +29,20 @@ Event loopEvent(Stamp stamp, double age, const LoopVerification& loop, double sc
            {"seconds_ago", age}}};
 }
 
+Event gateEvent(Stamp stamp, const LoopVerification& loop, const OdometryComparison& comparison) {
+  return {
+      stamp,
+      Severity::kInfo,
+      "loop_against_odometry",
+      "two places look the same, but the way flown cannot have led from one to the other; if it "
+      "can, the odometry is bad: raise loop_max_drift",
+      {{"query", static_cast<double>(loop.query_id)},
+       {"old", static_cast<double>(loop.old_id)},
+       {"way_m", comparison.way},
+       {"off_by_m", comparison.position_error},
+       {"off_by_deg", comparison.yaw_error / kDegree}}};
+}
+
 bool isNear(const Pose& a, const Pose& b, double distance, double angle) {
   return (a.position - b.position).norm() < distance &&
          a.rotation.angularDistance(b.rotation) < angle;
@@ -90,12 +104,31 @@ bool PoseGraph::isWorthKeeping(const Keyframe& keyframe) {
 }
 
 void PoseGraph::search(const Keyframe& keyframe, const cv::Mat& image, PoseGraphResult* result) {
-  result->search = finder_.addKeyframe(keyframe, image);
+  const auto gate = [&](const LoopVerification& loop) {
+    return agreesWithOdometry(keyframe.stamp, loop, &result->events);
+  };
+  result->search = finder_.addKeyframe(keyframe, image, gate);
   const LoopVerification* accepted = result->search.accepted();
   counts_.rejected += result->search.checked.size() - (accepted != nullptr ? 1 : 0);
   if (accepted != nullptr) {
     addFound(keyframe, *accepted, result->search.checked.back().score, result);
   }
+}
+
+bool PoseGraph::agreesWithOdometry(Stamp stamp, const LoopVerification& loop,
+                                   std::vector<Event>* events) {
+  const auto comparison = graph_.use([&](const KeyframeGraph& graph) {
+    return compareWithOdometry(options_.gate, graph, loop.query_id, loop.old_id, loop.T_old_query);
+  });
+  if (!comparison || comparison->is_plausible) return true;
+  constexpr double kQuiet = 5.0;  // seconds: along a corridor every keyframe would tell of it
+  const bool is_news = !last_gate_event_ || toSeconds(stamp - *last_gate_event_) >= kQuiet ||
+                       stamp < *last_gate_event_;
+  if (is_news) {
+    events->push_back(gateEvent(stamp, loop, *comparison));
+    last_gate_event_ = stamp;
+  }
+  return false;
 }
 
 void PoseGraph::addFound(const Keyframe& keyframe, const LoopVerification& loop, double score,

@@ -12,6 +12,7 @@ constexpr Range kAngle{0.0, 180.0};
 constexpr Range kCount{0, 1000};
 constexpr Range kKeyframes{200, 100000};
 constexpr Range kInliers{10, 1000};
+constexpr Range kDrift{0.0, 1e6};
 constexpr Range kSigma{1e-4, 100.0};
 
 /// A file's path, seen from the configuration file's folder; "" where the key is absent.
@@ -26,6 +27,7 @@ std::string fileOf(const Parameters& parameters, const char* key) {
 
 void PoseGraphOptions::validate() const {
   loops.validate();
+  gate.validate();
   graph.validate();
   optimizer.validate();
   thinning.validate();
@@ -43,6 +45,7 @@ std::ostream& operator<<(std::ostream& out, const PoseGraphOptions& options) {
              << "skip_cnt: " << options.skip_count << "\n"
              << "max_keyframes: " << options.thinning.max_keyframes << "\n"
              << "min_loop_inliers: " << options.loops.verifier.min_inliers << "\n"
+             << "loop_max_drift: " << options.gate.position_share << "\n"
              << "position_drift: " << options.graph.position_drift << " m/sqrt(s)\n"
              << "yaw_drift: " << options.graph.yaw_drift << " rad/sqrt(s)\n";
 }
@@ -63,6 +66,8 @@ PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters) 
       parameters.integerOr("max_keyframes", options.thinning.max_keyframes, kKeyframes);
   options.loops.verifier.min_inliers =
       parameters.integerOr("min_loop_inliers", options.loops.verifier.min_inliers, kInliers);
+  options.gate.position_share =
+      parameters.numberOr("loop_max_drift", options.gate.position_share, kDrift);
   options.validate();
   return result;
 }

@@ -105,6 +105,8 @@ class PoseGraph {
  private:
   bool isWorthKeeping(const Keyframe& keyframe);
   void search(const Keyframe& keyframe, const cv::Mat& image, PoseGraphResult* result);
+  /// False where the way flown contradicts a loop that images have verified; an event tells of it.
+  bool agreesWithOdometry(Stamp stamp, const LoopVerification& loop, std::vector<Event>* events);
   void addFound(const Keyframe& keyframe, const LoopVerification& loop, double score,
                 PoseGraphResult* result);
   LoopMatch matchOf(const Keyframe& keyframe, const LoopVerification& loop);
@@ -120,6 +122,7 @@ class PoseGraph {
   PoseGraphStatistics counts_;
   std::optional<std::uint32_t> newest_sequence_;
   int left_to_skip_ = 0;
+  std::optional<Stamp> last_gate_event_;  ///< [ns]
   std::atomic<std::size_t> runs_{0};
   std::atomic<std::size_t> failures_{0};
   std::size_t failures_told_ = 0;

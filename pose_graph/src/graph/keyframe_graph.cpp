@@ -54,19 +54,20 @@ KeyframeGraph KeyframeGraph::restore(const KeyframeGraphOptions& options,
   return graph;
 }
 
-void KeyframeGraph::insert(const KeyframeVertex& vertex) {
+void KeyframeGraph::insert(KeyframeVertex vertex) {
   const std::string name = "keyframe " + std::to_string(vertex.id);
   if (!isFinite(vertex.T_wb) || !isFinite(vertex.T_mb)) {
     throw InputError(name + ": found a pose with numbers that are not finite");
   }
   const auto known = sequences_.find(vertex.sequence);
   if (known != sequences_.end() && !known->second.ids.empty()) {
-    const Stamp last = vertices_.at(known->second.ids.back()).stamp;
-    if (vertex.stamp <= last) {
+    const KeyframeVertex& last = vertices_.at(known->second.ids.back());
+    if (vertex.stamp <= last.stamp) {
       throw InputError(name + ": found stamp " + std::to_string(vertex.stamp) +
-                       " in a sequence that has reached " + std::to_string(last) +
+                       " in a sequence that has reached " + std::to_string(last.stamp) +
                        "; allowed: later ones, or a new sequence");
     }
+    vertex.travelled = last.travelled + (vertex.T_wb.position - last.T_wb.position).norm();
   }
   if (!vertices_.emplace(vertex.id, vertex).second) {
     throw InputError(name + ": is in the graph already");
@@ -79,7 +80,7 @@ void KeyframeGraph::insert(const KeyframeVertex& vertex) {
 
 void KeyframeGraph::addKeyframe(std::int64_t id, std::uint32_t sequence, Stamp stamp,
                                 const Pose& T_wb) {
-  insert({id, sequence, stamp, T_wb, drift(sequence).value_or(Pose()) * T_wb});
+  insert({id, sequence, stamp, T_wb, drift(sequence).value_or(Pose()) * T_wb, 0.0});
 }
 
 bool KeyframeGraph::updateOdometry(std::int64_t id, const Pose& T_wb) {

@@ -30,7 +30,8 @@ LoopFinder::LoopFinder(std::shared_ptr<const Camera> camera, const PlaceModel& p
   options_.validate();
 }
 
-LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, const cv::Mat& image) {
+LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, const cv::Mat& image,
+                                   const Gate& gate) {
   LoopSearch search;
   WallClock clock;
   DescribedView described = describer_.describe(keyframe, image);
@@ -39,7 +40,7 @@ LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, const cv::Mat& imag
       detector_.detect(keyframe.id, keyframe.stamp, described.bag);
   search.query_seconds = clock.lap();
   if (!isTooSoon(keyframe)) {
-    verify(described.view, candidates, &search);
+    verify(described.view, candidates, gate, &search);
     search.verify_seconds = clock.lap();
   }
   if (search.accepted() != nullptr) last_loop_ = {keyframe.sequence, keyframe.stamp};
@@ -54,10 +55,13 @@ bool LoopFinder::isTooSoon(const Keyframe& keyframe) const {
 }
 
 void LoopFinder::verify(const KeyframeView& query, const std::vector<LoopCandidate>& candidates,
-                        LoopSearch* search) const {
+                        const Gate& gate, LoopSearch* search) const {
   for (const LoopCandidate& candidate : candidates) {
     search->checked.push_back({candidate.score, verifier_.verify(query, views_.at(candidate.id))});
-    if (search->checked.back().verification.isAccepted()) return;
+    LoopVerification& verification = search->checked.back().verification;
+    if (!verification.isAccepted()) continue;
+    if (!gate || gate(verification)) return;
+    verification.status = LoopStatus::kAgainstOdometry;
   }
 }
 

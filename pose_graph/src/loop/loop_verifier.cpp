@@ -124,6 +124,8 @@ const char* toString(LoopStatus status) {
       return "turned far";
     case LoopStatus::kFarAway:
       return "far away";
+    case LoopStatus::kAgainstOdometry:
+      return "against odometry";
   }
   return "unknown";
 }

@@ -21,6 +21,7 @@ struct KeyframeVertex {
   Stamp stamp = 0;             ///< [ns]
   Pose T_wb;                   ///< body in its own sequence's odometry world
   Pose T_mb;                   ///< body in the map; roll and pitch are those of T_wb
+  double travelled = 0.0;      ///< by the odometry since the sequence's first keyframe [m]
 };
 
 /// Relative pose of two keyframes in four degrees of freedom. Each keyframe carries a heading
@@ -144,7 +145,7 @@ class KeyframeGraph {
     Pose T_mw;                      ///< at the newest keyframe there has been
   };
 
-  void insert(const KeyframeVertex& vertex);
+  void insert(KeyframeVertex vertex);
   void joinComponents(std::uint32_t older, std::uint32_t younger);
   void moveComponent(std::uint32_t component, const Pose& T_new_old);
   void noteDrift(Sequence* sequence) const;

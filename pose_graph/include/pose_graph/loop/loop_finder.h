@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -56,9 +57,13 @@ class LoopFinder {
   LoopFinder(std::shared_ptr<const Camera> camera, const PlaceModel& places,
              const LoopFinderOptions& options);
 
-  /// Looks for the keyframe's place and remembers it. Ids must rise. Throws InputError where the
-  /// image (CV_8UC1) is not the camera's.
-  LoopSearch addKeyframe(const Keyframe& keyframe, const cv::Mat& image);
+  /// Says whether a verified loop can be, by what else is known.
+  using Gate = std::function<bool(const LoopVerification&)>;
+
+  /// Looks for the keyframe's place and remembers it. Ids must rise. What `gate` refuses is
+  /// LoopStatus::kAgainstOdometry, and the next candidate gets its turn. Throws InputError where
+  /// the image (CV_8UC1) is not the camera's.
+  LoopSearch addKeyframe(const Keyframe& keyframe, const cv::Mat& image, const Gate& gate = {});
 
   /// Forgets a keyframe; false where it is not known.
   bool remove(std::int64_t id);
@@ -74,7 +79,7 @@ class LoopFinder {
  private:
   bool isTooSoon(const Keyframe& keyframe) const;
   void verify(const KeyframeView& query, const std::vector<LoopCandidate>& candidates,
-              LoopSearch* search) const;
+              const Gate& gate, LoopSearch* search) const;
 
   struct LastLoop {
     std::uint32_t sequence;

@@ -47,7 +47,8 @@ enum class LoopStatus {
   kFewPoseInliers,      ///< no pose puts enough of the points where they are seen
   kTilted,              ///< the pose contradicts the gravity of the odometry
   kTurnedFar,           ///< a larger yaw than is plausible
-  kFarAway              ///< a larger translation than is plausible
+  kFarAway,             ///< a larger translation than is plausible
+  kAgainstOdometry      ///< the way flown cannot have led there
 };
 
 /// "accepted", "few matches", ...
