@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   try {
     vins::PoseGraphRos graph(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::spin();
+    graph.finish();
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());
     return 1;
