@@ -4,5 +4,6 @@
 #include "vins_msgs/node_main.h"
 
 int main(int argc, char** argv) {
-  return vins_msgs::runNode<vins::PoseGraphRos>(argc, argv, "pose_graph");
+  return vins_msgs::runNode<vins::PoseGraphRos>(argc, argv, "pose_graph",
+                                                [](vins::PoseGraphRos& graph) { graph.finish(); });
 }

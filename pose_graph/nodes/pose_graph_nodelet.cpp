@@ -1,3 +1,4 @@
+#include <exception>
 #include <memory>
 
 #include <nodelet/nodelet.h>
@@ -10,6 +11,15 @@ namespace vins {
 
 /// The pose graph in a nodelet manager.
 class PoseGraphNodelet : public nodelet::Nodelet {
+ public:
+  ~PoseGraphNodelet() override {
+    try {
+      if (graph_) graph_->finish();
+    } catch (const std::exception& error) {
+      NODELET_ERROR_STREAM(error.what());
+    }
+  }
+
  private:
   void onInit() override {
     try {

@@ -20,6 +20,9 @@ void append(const nav_msgs::Path& more, nav_msgs::Path* path) {
   path->poses.insert(path->poses.end(), more.poses.begin(), more.poses.end());
 }
 
+/// Sequences of loaded maps have negative numbers.
+bool isOfThisRun(const SequencePath& path) { return path.sequence >= 0; }
+
 }  // namespace
 
 PoseGraphPublisher::PoseGraphPublisher(const ros::NodeHandle& node, const PoseGraphFrames& frames)
@@ -27,7 +30,7 @@ PoseGraphPublisher::PoseGraphPublisher(const ros::NodeHandle& node, const PoseGr
   match_ = node_.advertise<vins_msgs::LoopMatch>("loop_match", 100);
   path_ = node_.advertise<nav_msgs::Path>("pose_graph_path", 10);
   no_loop_path_ = node_.advertise<nav_msgs::Path>("no_loop_path", 10);
-  base_path_ = node_.advertise<nav_msgs::Path>("base_path", 10);
+  base_path_ = node_.advertise<nav_msgs::Path>("base_path", 10, true);
   markers_ = node_.advertise<visualization_msgs::MarkerArray>("pose_graph", 10);
   picture_ = node_.advertise<sensor_msgs::Image>("match_image", 10);
   odometry_ = node_.advertise<nav_msgs::Odometry>("odometry", 100);
@@ -64,9 +67,9 @@ void PoseGraphPublisher::publishPaths(PoseGraph* graph, bool now) {
   last_paths_ = time;
   const std::vector<SequencePath> paths = graph->paths();
   if (paths.empty()) return;
-  publishMapPath(paths);
+  publishMapPath(paths, now);
   publishSequences(paths);
-  if (no_loop_path_.getNumSubscribers() > 0) {
+  if (isOfThisRun(paths.back()) && no_loop_path_.getNumSubscribers() > 0) {
     no_loop_path_.publish(toOdometryPath(paths.back(), frames_.odom));
   }
   if (markers_.getNumSubscribers() > 0) {
@@ -74,14 +77,14 @@ void PoseGraphPublisher::publishPaths(PoseGraph* graph, bool now) {
   }
 }
 
-void PoseGraphPublisher::publishMapPath(const std::vector<SequencePath>& paths) {
-  if (path_.getNumSubscribers() + base_path_.getNumSubscribers() == 0) return;
+void PoseGraphPublisher::publishMapPath(const std::vector<SequencePath>& paths, bool now) {
+  if (!now && path_.getNumSubscribers() + base_path_.getNumSubscribers() == 0) return;
   nav_msgs::Path base, all;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (!paths[i].in_map) continue;
     const nav_msgs::Path path = toPath(paths[i], frames_.map);
     append(path, &all);
-    if (i + 1 < paths.size()) append(path, &base);
+    if (i + 1 < paths.size() || !isOfThisRun(paths[i])) append(path, &base);
   }
   path_.publish(all);
   if (!base.poses.empty()) base_path_.publish(base);

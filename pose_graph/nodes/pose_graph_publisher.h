@@ -8,7 +8,6 @@
 #include <ros/ros.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include "picture_store.h"
 #include "pose_graph/pose_graph.h"
 
 namespace vins {
@@ -22,8 +21,9 @@ struct PoseGraphFrames {
 /// Turns the pose graph's results into messages. Topics live in the node's own namespace, under the
 /// names that VINS-Mono's users know:
 /// - `pose_graph_path`: all keyframes of the map; `path_1`, `path_2`, ...: those of the first, the
-///   second sequence; `base_path`: those of the sequences before the newest that are in the map;
-///   `no_loop_path`: the newest sequence as the odometry alone has it;
+///   second sequence; `base_path`: those of the map that are not of the newest run, loaded
+///   maps too (latched);
+///   `no_loop_path`: the newest run as the odometry alone has it;
 /// - `pose_graph`: steps and loops as markers; `match_image`: a picture of each loop;
 /// - `odometry`: corrected; `loop_match`: for the estimator; `event`.
 /// Paths and pictures are made only where somebody subscribes.
@@ -44,13 +44,13 @@ class PoseGraphPublisher {
   void publishPicture(Stamp stamp, const cv::Mat& picture);
 
  private:
-  void publishMapPath(const std::vector<SequencePath>& paths);
+  void publishMapPath(const std::vector<SequencePath>& paths, bool now);
   void publishSequences(const std::vector<SequencePath>& paths);
 
   ros::NodeHandle node_;
   PoseGraphFrames frames_;
   ros::Publisher match_, path_, no_loop_path_, base_path_, markers_, picture_, odometry_, events_;
-  std::map<std::uint32_t, ros::Publisher> sequences_;
+  std::map<SequenceNumber, ros::Publisher> sequences_;
   ros::WallTime last_paths_;
   tf2_ros::TransformBroadcaster transforms_;
 };

@@ -80,22 +80,61 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node)
     return;
   }
   graph_ = makeGraph(parameters, configuration_);
+  private_node.param("save_map", save_at_end_, save_at_end_);
+  loadFirstMap(private_node);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("pose graph", this, &PoseGraphRos::report);
   timer_ = node.createTimer(ros::Duration(1.0),
                             [this](const ros::TimerEvent&) { diagnostics_.update(); });
   subscribe(node, parameters.text("image_topic"));
+  services_ = std::make_unique<MapServices>(
+      private_node, [this](MapRequest request) { push(std::move(request)); });
   // Last: what has thrown must not leave a thread behind.
   worker_ = std::thread([this] { work(); });
 }
 
-PoseGraphRos::~PoseGraphRos() {
+PoseGraphRos::~PoseGraphRos() { stop(); }
+
+void PoseGraphRos::stop() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     stopping_ = true;
   }
   arrived_.notify_one();
   if (worker_.joinable()) worker_.join();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  queue_.clear();  // who waits for an answer is told that there will be none
+}
+
+void PoseGraphRos::finish() {
+  stop();
+  if (!graph_ || save_at_end_.empty()) return;
+  if (graph_->statistics().keyframes == 0) {
+    ROS_WARN_STREAM(save_at_end_ << ": not written: there was no keyframe");
+    return;
+  }
+  graph_->finish();
+  ROS_INFO_STREAM(saveMap(save_at_end_));
+}
+
+void PoseGraphRos::loadFirstMap(const ros::NodeHandle& private_node) {
+  std::string file;
+  private_node.param("load_map", file, file);
+  if (file.empty() && configuration_.loads_map) file = configuration_.map_file;
+  if (!file.empty()) ROS_INFO_STREAM(loadMap(file));
+}
+
+std::string PoseGraphRos::saveMap(const std::string& file) {
+  graph_->waitUntilIdle();
+  const std::size_t keyframes =
+      graph_->save(file, configuration_.saves_images ? &pictures_ : nullptr);
+  return "saved " + file + ": " + std::to_string(keyframes) + " keyframes";
+}
+
+std::string PoseGraphRos::loadMap(const std::string& file) {
+  const LoadedMap loaded = graph_->load(file, &pictures_);
+  publisher_.publishPaths(graph_.get(), true);
+  return "loaded " + file + ": " + loaded.describe();
 }
 
 void PoseGraphRos::subscribe(ros::NodeHandle node, const std::string& image_topic) {
@@ -131,8 +170,9 @@ void PoseGraphRos::onImage(const sensor_msgs::Image::ConstPtr& message) {
 void PoseGraphRos::push(Input input) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    // Falling behind for good: what is newest is left out.
-    if (queue_.size() >= kMaxWaiting) {
+    if (stopping_) return;
+    // Falling behind for good: what is newest is left out. People's wishes are not.
+    if (queue_.size() >= kMaxWaiting && !std::holds_alternative<MapRequest>(input)) {
       ++dropped_;
       return;
     }
@@ -183,9 +223,9 @@ void PoseGraphRos::handle(Keyframe keyframe) {
 
 void PoseGraphRos::showLoop(const Keyframe& keyframe, const cv::Mat& image,
                             const PoseGraphResult& result) {
-  if (image.empty() || !publisher_.wantsPictures()) return;
-  pictures_.add(keyframe.id, image);
-  if (!result.match) return;
+  if (image.empty()) return;
+  if (configuration_.saves_images || publisher_.wantsPictures()) pictures_.add(keyframe.id, image);
+  if (!result.match || !publisher_.wantsPictures()) return;
   const cv::Mat old_image = pictures_.find(result.match->old_id, image.size());
   publisher_.publishPicture(keyframe.stamp,
                             graph_->draw(result.search.checked.back(), image, old_image));
@@ -199,6 +239,22 @@ void PoseGraphRos::handle(KeyframePoseUpdate update) {
 void PoseGraphRos::handle(LoopEdge edge) {
   numbering_.take(&edge);
   hear(graph_->addLoopEdge(edge).events);
+}
+
+void PoseGraphRos::handle(const MapRequest& request) {
+  const std::string& file = request.file.empty() ? configuration_.map_file : request.file;
+  vins_msgs::MapFile::Response answer;
+  try {
+    if (file.empty()) throw InputError("no file was named, and pose_graph_save_path is not set");
+    answer.message = request.saves ? saveMap(file) : loadMap(file);
+    answer.success = true;
+    ROS_INFO_STREAM(answer.message);
+  } catch (const InputError& error) {
+    answer.success = false;
+    answer.message = error.what();
+    ROS_ERROR_STREAM(answer.message);
+  }
+  request.answer->set_value(answer);
 }
 
 void PoseGraphRos::handle(const nav_msgs::Odometry& odometry) {

@@ -16,7 +16,8 @@
 #include <sensor_msgs/Image.h>
 
 #include "keyframe_numbering.h"
-#include "picture_store.h"
+#include "map_services.h"
+#include "pose_graph/map/picture_store.h"
 #include "pose_graph/place/recent_images.h"
 #include "pose_graph/pose_graph.h"
 #include "pose_graph_publisher.h"
@@ -29,20 +30,27 @@ namespace vins {
 /// The pose graph's ROS face, shared by node and nodelet. Callbacks only queue; one worker
 /// describes and compares, and the optimization has a thread of its own.
 ///
-/// Private parameters: `config_file` (the rig's YAML; needed), `map_frame`, `odom_frame`,
-/// `image_transport` is raw. Subscribes the file's image_topic and the estimator's `keyframe`,
-/// `keyframe_pose_update`, `loop_edge` and `odometry`.
+/// Private parameters: `config_file` (the rig's YAML; needed), `map_frame`, `odom_frame`;
+/// `load_map` (a map file to begin with; otherwise the one of pose_graph_save_path, where the YAML
+/// has load_previous_pose_graph) and `save_map` (where finish() writes the map); `image_transport`
+/// is raw. Subscribes the file's image_topic and the estimator's `keyframe`,
+/// `keyframe_pose_update`, `loop_edge` and `odometry`. Serves `~save_map` and `~load_map`.
 class PoseGraphRos {
  public:
-  /// Throws InputError for a configuration that is missing or malformed.
+  /// Throws InputError for a configuration or a map that is missing or malformed.
   PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node);
   PoseGraphRos(const PoseGraphRos&) = delete;
   PoseGraphRos& operator=(const PoseGraphRos&) = delete;
   ~PoseGraphRos();
 
+  /// The end of all input: saves the map where `save_map` wants it. Nothing is taken any more.
+  /// Throws InputError where it cannot be written.
+  void finish();
+
  private:
   /// What callbacks hand to the worker, in the order of arrival.
-  using Input = std::variant<Keyframe, KeyframePoseUpdate, LoopEdge, nav_msgs::Odometry>;
+  using Input =
+      std::variant<Keyframe, KeyframePoseUpdate, LoopEdge, nav_msgs::Odometry, MapRequest>;
 
   void subscribe(ros::NodeHandle node, const std::string& image_topic);
   void onImage(const sensor_msgs::Image::ConstPtr& message);
@@ -52,6 +60,11 @@ class PoseGraphRos {
   void handle(KeyframePoseUpdate update);
   void handle(LoopEdge edge);
   void handle(const nav_msgs::Odometry& odometry);
+  void handle(const MapRequest& request);
+  void stop();
+  void loadFirstMap(const ros::NodeHandle& private_node);
+  std::string saveMap(const std::string& file);
+  std::string loadMap(const std::string& file);
   void showLoop(const Keyframe& keyframe, const cv::Mat& image, const PoseGraphResult& result);
   void hear(const std::vector<Event>& events);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -62,6 +75,7 @@ class PoseGraphRos {
   PictureStore pictures_;
   KeyframeNumbering numbering_;  // the worker's alone
   std::uint32_t sequence_ = 0;   // of the newest keyframe
+  std::string save_at_end_;
 
   std::mutex mutex_;  // of all below
   std::condition_variable arrived_;
@@ -77,6 +91,7 @@ class PoseGraphRos {
   std::vector<ros::Subscriber> subscribers_;
   ros::Timer timer_;
   std::thread worker_;
+  std::unique_ptr<MapServices> services_;
 };
 
 }  // namespace vins

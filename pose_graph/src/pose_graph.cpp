@@ -70,20 +70,37 @@ PoseGraph::PoseGraph(const PoseGraphOptions& options, std::shared_ptr<const Came
 
 PoseGraphResult PoseGraph::addKeyframe(const Keyframe& keyframe, const cv::Mat& image) {
   PoseGraphResult result;
-  reportFailures(keyframe.stamp, &result.events);
-  result.is_kept = isWorthKeeping(keyframe);
-  if (!result.is_kept) {
+  if (!addToGraph(keyframe, &result)) return result;
+  if (!image.empty()) {
+    const LoopFinder::Gate gate = gateFor(keyframe.stamp, &result.events);
+    take(keyframe, finder_.addKeyframe(keyframe, image, gate), &result);
+  }
+  removeRedundant();
+  return result;
+}
+
+PoseGraphResult PoseGraph::addKeyframe(const Keyframe& keyframe, DescribedView described) {
+  PoseGraphResult result;
+  if (!addToGraph(keyframe, &result)) return result;
+  const LoopFinder::Gate gate = gateFor(keyframe.stamp, &result.events);
+  take(keyframe, finder_.addKeyframe(keyframe, std::move(described), gate), &result);
+  removeRedundant();
+  return result;
+}
+
+bool PoseGraph::addToGraph(const Keyframe& keyframe, PoseGraphResult* result) {
+  reportFailures(keyframe.stamp, &result->events);
+  result->is_kept = isWorthKeeping(keyframe);
+  if (!result->is_kept) {
     ++counts_.skipped;
-    return result;
+    return false;
   }
   graph_.use([&](KeyframeGraph& graph) {
     graph.addKeyframe(keyframe.id, keyframe.sequence, keyframe.stamp, keyframe.T_wb);
   });
   newest_sequence_ = keyframe.sequence;
   left_to_skip_ = options_.skip_count;
-  if (!image.empty()) search(keyframe, image, &result);
-  removeRedundant();
-  return result;
+  return true;
 }
 
 bool PoseGraph::isWorthKeeping(const Keyframe& keyframe) {
@@ -103,11 +120,14 @@ bool PoseGraph::isWorthKeeping(const Keyframe& keyframe) {
   });
 }
 
-void PoseGraph::search(const Keyframe& keyframe, const cv::Mat& image, PoseGraphResult* result) {
-  const auto gate = [&](const LoopVerification& loop) {
-    return agreesWithOdometry(keyframe.stamp, loop, &result->events);
+LoopFinder::Gate PoseGraph::gateFor(Stamp stamp, std::vector<Event>* events) {
+  return [this, stamp, events](const LoopVerification& loop) {
+    return agreesWithOdometry(stamp, loop, events);
   };
-  result->search = finder_.addKeyframe(keyframe, image, gate);
+}
+
+void PoseGraph::take(const Keyframe& keyframe, LoopSearch search, PoseGraphResult* result) {
+  result->search = std::move(search);
   const LoopVerification* accepted = result->search.accepted();
   counts_.rejected += result->search.checked.size() - (accepted != nullptr ? 1 : 0);
   if (accepted != nullptr) {
@@ -240,14 +260,14 @@ void PoseGraph::finish() {
   if (has_loops) optimizer_.solveNow();
 }
 
-std::optional<Pose> PoseGraph::drift(std::uint32_t sequence) {
+std::optional<Pose> PoseGraph::drift(SequenceNumber sequence) {
   return graph_.use([&](const KeyframeGraph& graph) { return graph.drift(sequence); });
 }
 
 std::vector<SequencePath> PoseGraph::paths() {
   return graph_.use([](const KeyframeGraph& graph) {
     std::vector<SequencePath> paths;
-    for (const std::uint32_t sequence : graph.sequences()) {
+    for (const SequenceNumber sequence : graph.sequences()) {
       SequencePath path{sequence, graph.inMap(sequence), {}};
       for (const std::int64_t id : graph.keyframesOf(sequence)) {
         path.keyframes.push_back(graph.vertices().at(id));

@@ -58,7 +58,14 @@ PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters) 
   result.files.vocabulary = fileOf(parameters, "vocabulary_file");
   result.files.pattern = fileOf(parameters, "brief_pattern_file");
   result.loads_map = parameters.flagOr("load_previous_pose_graph", result.loads_map);
-  result.map_folder = parameters.textOr("pose_graph_save_path", "");
+  const std::string map_folder = fileOf(parameters, "pose_graph_save_path");
+  if (!map_folder.empty()) {
+    result.map_file = (std::filesystem::path(map_folder) / "pose_graph.map").string();
+  }
+  if (result.loads_map && result.map_file.empty()) {
+    parameters.fail("load_previous_pose_graph", "1 without pose_graph_save_path",
+                    "0, or 1 beside the folder that holds pose_graph.map");
+  }
   result.saves_images = parameters.flagOr("save_image", result.saves_images);
   options.skip_distance = parameters.numberOr("skip_dis", options.skip_distance, kDistance);
   options.skip_count = parameters.integerOr("skip_cnt", options.skip_count, kCount);

@@ -154,7 +154,7 @@ TEST(KeyframeGraph, SequencesJoinedAmongThemselvesMoveTogether) {
   loop.old_id = 22;  // the newer sequence is the loop's old end: it moves all the same
   loop.query_id = 13;
   EXPECT_EQ(graph.addLoopEdge(loop), LoopOutcome::kJoined);
-  EXPECT_EQ(graph.component(2), 1u);
+  EXPECT_EQ(graph.component(2), 1);
   EXPECT_FALSE(graph.inMap(2));
   EXPECT_LT(difference(vertex(graph, 25).T_mb, elsewhere * run.truth[5]), kRounding);
   loop = run.loop(0, 4);
@@ -264,7 +264,7 @@ TEST(KeyframeGraph, RestoredGraphIsTheStoredOne) {
   std::vector<KeyframeVertex> vertices;
   for (const auto& item : graph.vertices()) vertices.push_back(item.second);
   const KeyframeGraph copy = KeyframeGraph::restore({}, vertices, graph.loops());
-  EXPECT_EQ(copy.component(3), 0u);
+  EXPECT_EQ(copy.component(3), 0);
   for (const auto& [id, v] : graph.vertices()) {
     EXPECT_EQ(difference(vertex(copy, id).T_mb, v.T_mb), 0.0);
   }

@@ -1,4 +1,7 @@
 // The node, seen from outside: keyframes and images in, paths, matches and transforms out.
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -12,20 +15,64 @@
 #include <nav_msgs/Path.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <tf2_msgs/TFMessage.h>
+#include <unistd.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include "revisits.h"
+#include "temp_folder.h"
 #include "vins_msgs/Keyframe.h"
 #include "vins_msgs/KeyframePoseUpdate.h"
 #include "vins_msgs/LoopEdge.h"
 #include "vins_msgs/LoopMatch.h"
+#include "vins_msgs/MapFile.h"
 #include "vins_msgs/conversions.h"
 
 namespace vins {
 namespace {
 
 using testing::Revisits;
+
+/// Another pose graph node, with private parameters of its own.
+class SecondNode {
+ public:
+  SecondNode(const std::string& name, const std::string& parameter) {
+    const auto tool = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "pose_graph";
+    std::string config;
+    ros::param::get("/pose_graph/config_file", config);
+    std::vector<std::string> texts = {tool.string(), "__name:=" + name, "_config_file:=" + config,
+                                      parameter};
+    std::vector<char*> arguments;
+    for (std::string& text : texts) arguments.push_back(text.data());
+    arguments.push_back(nullptr);
+    if (posix_spawn(&process_, tool.c_str(), nullptr, nullptr, arguments.data(), environ) != 0) {
+      throw std::runtime_error("cannot start " + tool.string());
+    }
+  }
+  ~SecondNode() { stop(); }
+  SecondNode(const SecondNode&) = delete;
+  SecondNode& operator=(const SecondNode&) = delete;
+
+  /// Ends it as Ctrl-C does; its exit code.
+  int stop() {
+    if (process_ == 0) return 0;
+    kill(process_, SIGINT);
+    return wait();
+  }
+
+  /// Waits until it ends; its exit code.
+  int wait() {
+    int status = 0;
+    waitpid(process_, &status, 0);
+    process_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+ private:
+  pid_t process_ = 0;
+};
 
 /// Plays the camera and the estimator, and hears what the node says.
 class NodeTest : public ::testing::Test {
@@ -98,6 +145,15 @@ class NodeTest : public ::testing::Test {
     return waitFor([&] { return corrected_ && corrected_->header.stamp == header.stamp; });
   }
 
+  /// What a map service answers.
+  static vins_msgs::MapFile::Response ask(const std::string& service, const std::string& file) {
+    vins_msgs::MapFile call;
+    call.request.file = file;
+    EXPECT_TRUE(ros::service::waitForService(service, ros::Duration(10.0))) << service;
+    EXPECT_TRUE(ros::service::call(service, call)) << service;
+    return call.response;
+  }
+
   ros::NodeHandle handle_;
   ros::Publisher images_, keyframes_, updates_, edges_, odometry_;
   std::vector<ros::Subscriber> subscribers_;
@@ -158,6 +214,42 @@ TEST_F(NodeTest, DoesWhatItsTopicsPromise) {
   EXPECT_TRUE(waitFor([this] { return told_["keyframes"] == "36"; }));
   EXPECT_EQ(told_["messages dropped"], "0");
   EXPECT_EQ(told_["keyframes without image"], "0");
+}
+
+TEST_F(NodeTest, SavesAndLoadsMaps) {
+  const testing::TempFolder folder("pose_graph_node_test");
+  next_id_ = 1000;  // the node knows the first ones already
+  SecondNode second("/second", "_save_map:=" + folder.file("new/end.map"));
+  ASSERT_TRUE(waitFor([this] { return keyframes_.getNumSubscribers() > 1; }));
+  ASSERT_TRUE(waitFor([this] { return images_.getNumSubscribers() > 1; }));
+  for (int place = 40; place < 46; ++place) ASSERT_TRUE(visit(place)) << place;
+
+  const auto saved = ask("/pose_graph/save_map", folder.file("a.map"));
+  EXPECT_TRUE(saved.success) << saved.message;
+  EXPECT_NE(saved.message.find("saved " + folder.file("a.map")), std::string::npos);
+  const auto unnamed = ask("/pose_graph/save_map", "");
+  EXPECT_FALSE(unnamed.success);
+  EXPECT_NE(unnamed.message.find("pose_graph_save_path"), std::string::npos) << unnamed.message;
+  const auto missing = ask("/pose_graph/load_map", folder.file("missing.map"));
+  EXPECT_FALSE(missing.success);
+  EXPECT_NE(missing.message.find(folder.file("missing.map")), std::string::npos);
+
+  // The second node writes its map when it ends.
+  EXPECT_TRUE(waitFor([&] { return ask("/second/save_map", folder.file("b.map")).success; }));
+  EXPECT_EQ(second.stop(), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("new/end.map")));
+
+  nav_msgs::Path::ConstPtr base;
+  hear<nav_msgs::Path>("/third/base_path", &base);
+  {
+    SecondNode third("/third", "_load_map:=" + folder.file("new/end.map"));
+    ASSERT_TRUE(waitFor([&] { return base != nullptr; })) << "before any keyframe";
+    EXPECT_EQ(base->poses.size(), 6u);
+    const auto loaded = ask("/third/load_map", folder.file("a.map"));
+    EXPECT_TRUE(loaded.success) << loaded.message;
+  }
+  SecondNode fourth("/fourth", "_load_map:=" + folder.file("missing.map"));
+  EXPECT_EQ(fourth.wait(), 1) << "a map that is not there";
 }
 
 }  // namespace

@@ -45,12 +45,20 @@ TEST(PoseGraphOptions, ReadsTheKeysOfVinsMonoAndItsOwn) {
   EXPECT_EQ(config.options.skip_distance, 0.0);
   EXPECT_EQ(config.options.skip_count, 2);
   EXPECT_TRUE(config.loads_map);
-  EXPECT_EQ(config.map_folder, "/maps/");
+  EXPECT_EQ(config.map_file, "/maps/pose_graph.map");
   EXPECT_TRUE(config.saves_images);
   EXPECT_EQ(config.files.vocabulary, "rigs/words.voc") << "seen from the configuration's folder";
   EXPECT_EQ(config.files.pattern, "/share/pattern.yml");
   EXPECT_EQ(config.options.thinning.max_keyframes, 500);
   EXPECT_EQ(config.options.loops.verifier.min_inliers, 30);
+}
+
+TEST(PoseGraphOptions, MapsAreInTheirFolder) {
+  EXPECT_EQ(read("a: 1\n").map_file, "");
+  EXPECT_EQ(read("pose_graph_save_path: maps\n").map_file, "rigs/maps/pose_graph.map")
+      << "seen from the configuration's folder";
+  const std::string error = errorOf("load_previous_pose_graph: 1");
+  EXPECT_NE(error.find("pose_graph_save_path"), std::string::npos) << error;
 }
 
 TEST(PoseGraphOptions, ErrorsNameFileKeyAndValue) {

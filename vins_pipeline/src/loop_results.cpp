@@ -41,7 +41,7 @@ void LoopResults::add(const PipelineResult& result) {
 }
 
 std::string LoopResults::finalPath(const std::vector<SequencePath>& paths) const {
-  std::map<std::uint32_t, const SequencePath*> by_sequence;
+  std::map<SequenceNumber, const SequencePath*> by_sequence;
   for (const SequencePath& path : paths) by_sequence[path.sequence] = &path;
   std::string text;
   for (const Frame& frame : frames_) {
@@ -55,6 +55,7 @@ std::string LoopResults::finalPath(const std::vector<SequencePath>& paths) const
 std::string LoopResults::vinsMonoCsv(const std::vector<SequencePath>& paths) {
   std::string text;
   for (const SequencePath& path : paths) {
+    if (path.sequence < 0) continue;
     for (const KeyframeVertex& keyframe : path.keyframes) text += csvLine(keyframe);
   }
   return text;

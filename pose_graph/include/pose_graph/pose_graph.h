@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -13,6 +14,8 @@
 #include "pose_graph/graph/keyframe_graph.h"
 #include "pose_graph/graph/optimizer_thread.h"
 #include "pose_graph/loop/loop_finder.h"
+#include "pose_graph/map/map_file.h"
+#include "pose_graph/map/picture_store.h"
 #include "pose_graph/pose_graph_options.h"
 #include "vins_core/event.h"
 #include "vins_core/keyframe.h"
@@ -38,9 +41,21 @@ struct LoopEdgeResult {
 
 /// Keyframes of a sequence, old ones first, with their poses in odometry and map.
 struct SequencePath {
-  std::uint32_t sequence = 0;
+  SequenceNumber sequence = 0;
   bool in_map = false;  ///< false: no loop has joined it to the map yet
   std::vector<KeyframeVertex> keyframes;
+};
+
+/// What a map has brought.
+struct LoadedMap {
+  std::size_t keyframes = 0;
+  std::size_t sequences = 0;
+  std::size_t loops = 0;
+  std::size_t without_view = 0;  ///< keyframes whose places cannot be told again
+  bool same_vocabulary = true;   ///< false: the words were found anew, by this vocabulary
+
+  /// A line for people.
+  std::string describe() const;
 };
 
 /// Counts since the start.
@@ -73,6 +88,9 @@ class PoseGraph {
   /// image is not the camera's.
   PoseGraphResult addKeyframe(const Keyframe& keyframe, const cv::Mat& image);
 
+  /// The same with a view that has been made already, as ViewDescriber makes it.
+  PoseGraphResult addKeyframe(const Keyframe& keyframe, DescribedView described);
+
   /// The odometry's last word on a keyframe. False where it is not in the graph.
   bool update(const KeyframePoseUpdate& update);
 
@@ -85,9 +103,22 @@ class PoseGraph {
   /// The input has ended: the graph is optimized once more with all that is known.
   void finish();
 
+  /// Writes all keyframes and loops as they are now to one file, with their pictures where a store
+  /// is given; see MapWriter. Sequences that no loop has joined stay apart. The number of keyframes
+  /// is returned. Throws InputError naming the file where it cannot be written, or where there is
+  /// no keyframe yet.
+  std::size_t save(const std::string& path, const PictureStore* pictures = nullptr);
+
+  /// Adds a map, whose places are looked for from the next keyframe on. Its keyframes and sequences
+  /// get negative numbers, below all that are there: its frame is that of the map from now on, and
+  /// a sequence of this run joins it by its first loop with it; until then it stands alone. Throws
+  /// InputError as readMap() does, or where the map's descriptors are of another pattern; all is
+  /// then as it was.
+  LoadedMap load(const std::string& path, PictureStore* pictures = nullptr);
+
   /// T_map_odom of a sequence as known now, yaw and translation only; nothing where it has no
   /// keyframe.
-  std::optional<Pose> drift(std::uint32_t sequence);
+  std::optional<Pose> drift(SequenceNumber sequence);
 
   /// A copy of the keyframes by sequence, from old to new.
   std::vector<SequencePath> paths();
@@ -104,7 +135,9 @@ class PoseGraph {
 
  private:
   bool isWorthKeeping(const Keyframe& keyframe);
-  void search(const Keyframe& keyframe, const cv::Mat& image, PoseGraphResult* result);
+  bool addToGraph(const Keyframe& keyframe, PoseGraphResult* result);
+  void take(const Keyframe& keyframe, LoopSearch search, PoseGraphResult* result);
+  LoopFinder::Gate gateFor(Stamp stamp, std::vector<Event>* events);
   /// False where the way flown contradicts a loop that images have verified; an event tells of it.
   bool agreesWithOdometry(Stamp stamp, const LoopVerification& loop, std::vector<Event>* events);
   void addFound(const Keyframe& keyframe, const LoopVerification& loop, double score,
@@ -120,7 +153,7 @@ class PoseGraph {
   LoopFinder finder_;
   SharedKeyframeGraph graph_;
   PoseGraphStatistics counts_;
-  std::optional<std::uint32_t> newest_sequence_;
+  std::optional<SequenceNumber> newest_sequence_;
   int left_to_skip_ = 0;
   std::optional<Stamp> last_gate_event_;  ///< [ns]
   std::atomic<std::size_t> runs_{0};

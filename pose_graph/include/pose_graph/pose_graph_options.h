@@ -49,16 +49,17 @@ struct PoseGraphConfiguration {
   bool is_on = true;              ///< loop_closure
   bool refines_in_window = true;  ///< fast_relocalization: loops go to the estimator
   PlaceModelFiles files;          ///< vocabulary_file, brief_pattern_file
-  bool loads_map = false;         ///< load_previous_pose_graph
-  std::string map_folder;         ///< pose_graph_save_path; "" where it is not given
-  bool saves_images = false;      ///< save_image: keyframes' images are kept in the map
+  bool loads_map = false;         ///< load_previous_pose_graph: map_file is loaded
+  std::string map_file;  ///< pose_graph.map in pose_graph_save_path; "" where that is not given
+  bool saves_images = false;  ///< save_image: keyframes' images are kept in the map
   PoseGraphOptions options;
 };
 
 /// Reads loop_closure, skip_dis, skip_cnt, load_previous_pose_graph, pose_graph_save_path,
 /// fast_relocalization, save_image, vocabulary_file, brief_pattern_file, max_keyframes,
 /// min_loop_inliers and loop_max_drift. All have defaults; files are seen from the configuration's
-/// folder. Throws InputError naming file, key, what was found and what is allowed.
+/// folder. Throws InputError naming file, key, what was found and what is allowed. A map is loaded
+/// only from a folder that is given.
 PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters);
 
 }  // namespace vins

@@ -18,10 +18,10 @@ class StateNumbers {
   explicit StateNumbers(const KeyframeGraph& graph) {
     std::set<std::int64_t> loop_ends;
     for (const LoopEdge& loop : graph.loops()) loop_ends.insert({loop.query_id, loop.old_id});
-    std::set<std::uint32_t> begun;  // components whose oldest loop end has been passed
+    std::set<SequenceNumber> begun;  // components whose oldest loop end has been passed
     // From old sequences to new ones: a component's oldest sequence comes first.
-    for (const std::uint32_t sequence : graph.sequences()) {
-      const std::uint32_t component = graph.component(sequence);
+    for (const SequenceNumber sequence : graph.sequences()) {
+      const SequenceNumber component = graph.component(sequence);
       for (const std::int64_t id : graph.keyframesOf(sequence)) {
         add(graph.vertices().at(id), begun.count(component) == 0);
         if (loop_ends.count(id) > 0) begun.insert(component);
@@ -69,7 +69,7 @@ GraphCorrection makeCorrection(const KeyframeGraph& graph, const StateNumbers& n
         states[index].position - R_mw * graph.vertices().at(id).T_wb.position;
     correction.T_mw.emplace(id, Pose(R_mw, p_mw));
   }
-  for (const std::uint32_t sequence : graph.sequences()) {
+  for (const SequenceNumber sequence : graph.sequences()) {
     correction.components[sequence] = graph.component(sequence);
   }
   return correction;

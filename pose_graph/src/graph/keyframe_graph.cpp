@@ -39,6 +39,13 @@ KeyframeGraph KeyframeGraph::restore(const KeyframeGraphOptions& options,
                                      const std::vector<KeyframeVertex>& vertices,
                                      const std::vector<LoopEdge>& loops) {
   KeyframeGraph graph(options);
+  graph.addStored(vertices, loops);
+  return graph;
+}
+
+void KeyframeGraph::addStored(const std::vector<KeyframeVertex>& vertices,
+                              const std::vector<LoopEdge>& loops) {
+  KeyframeGraph graph(*this);
   for (const KeyframeVertex& vertex : vertices) graph.insert(vertex);
   for (const LoopEdge& loop : loops) {
     const auto query = graph.vertices_.find(loop.query_id), old = graph.vertices_.find(loop.old_id);
@@ -46,12 +53,12 @@ KeyframeGraph KeyframeGraph::restore(const KeyframeGraphOptions& options,
       throw InputError("loop from keyframe " + std::to_string(loop.query_id) + " to " +
                        std::to_string(loop.old_id) + ": found an end that is no keyframe");
     }
-    const std::uint32_t of_query = graph.component(query->second.sequence);
-    const std::uint32_t of_old = graph.component(old->second.sequence);
+    const SequenceNumber of_query = graph.component(query->second.sequence);
+    const SequenceNumber of_old = graph.component(old->second.sequence);
     graph.joinComponents(std::min(of_query, of_old), std::max(of_query, of_old));
     graph.loops_.push_back(loop);
   }
-  return graph;
+  *this = std::move(graph);
 }
 
 void KeyframeGraph::insert(KeyframeVertex vertex) {
@@ -78,7 +85,7 @@ void KeyframeGraph::insert(KeyframeVertex vertex) {
   noteDrift(&sequence);
 }
 
-void KeyframeGraph::addKeyframe(std::int64_t id, std::uint32_t sequence, Stamp stamp,
+void KeyframeGraph::addKeyframe(std::int64_t id, SequenceNumber sequence, Stamp stamp,
                                 const Pose& T_wb) {
   insert({id, sequence, stamp, T_wb, drift(sequence).value_or(Pose()) * T_wb, 0.0});
 }
@@ -107,8 +114,8 @@ LoopOutcome KeyframeGraph::addLoopEdge(const LoopEdge& edge) {
     return LoopOutcome::kReplaced;
   }
   loops_.push_back(edge);
-  const std::uint32_t of_query = component(query->second.sequence);
-  const std::uint32_t of_old = component(old->second.sequence);
+  const SequenceNumber of_query = component(query->second.sequence);
+  const SequenceNumber of_old = component(old->second.sequence);
   if (of_query == of_old) return LoopOutcome::kAdded;
   const Pose T_new_old = correctionOf(edge);
   if (of_old < of_query) {
@@ -131,13 +138,13 @@ Pose KeyframeGraph::correctionOf(const LoopEdge& edge) const {
   return Pose(R_mw, p_m - R_mw * query.T_wb.position) * T_mw_query.inverse();
 }
 
-void KeyframeGraph::joinComponents(std::uint32_t older, std::uint32_t younger) {
+void KeyframeGraph::joinComponents(SequenceNumber older, SequenceNumber younger) {
   for (auto& [number, sequence] : sequences_) {
     if (sequence.component == younger) sequence.component = older;
   }
 }
 
-void KeyframeGraph::moveComponent(std::uint32_t component, const Pose& T_new_old) {
+void KeyframeGraph::moveComponent(SequenceNumber component, const Pose& T_new_old) {
   for (auto& [number, sequence] : sequences_) {
     if (sequence.component != component) continue;
     for (const std::int64_t id : sequence.ids) {
@@ -165,6 +172,19 @@ std::optional<std::int64_t> KeyframeGraph::nearestNeighbour(const KeyframeVertex
   return later_is_nearer ? *(here + 1) : nearest;
 }
 
+bool KeyframeGraph::hasLoopWith(const KeyframeVertex& vertex, const LoopEdge& like,
+                                const KeyframeVertex& from) const {
+  const auto otherEnd = [](const LoopEdge& loop, std::int64_t id) {
+    return loop.query_id == id ? loop.old_id : loop.query_id;
+  };
+  const SequenceNumber wanted = vertices_.at(otherEnd(like, from.id)).sequence;
+  return std::any_of(loops_.begin(), loops_.end(), [&](const LoopEdge& loop) {
+    if (loop.query_id != vertex.id && loop.old_id != vertex.id) return false;
+    const std::int64_t other = otherEnd(loop, vertex.id);
+    return other != from.id && vertices_.at(other).sequence == wanted;
+  });
+}
+
 void KeyframeGraph::handOverLoops(const KeyframeVertex& from, std::optional<std::int64_t> to) {
   const auto ends_here = [&from](const LoopEdge& loop) {
     return loop.query_id == from.id || loop.old_id == from.id;
@@ -175,7 +195,7 @@ void KeyframeGraph::handOverLoops(const KeyframeVertex& from, std::optional<std:
     const double position_variance = options_.position_drift * options_.position_drift * duration;
     const double yaw_variance = options_.yaw_drift * options_.yaw_drift * duration;
     for (LoopEdge& loop : loops_) {
-      if (!ends_here(loop)) continue;
+      if (!ends_here(loop) || hasLoopWith(heir, loop, from)) continue;
       if (loop.query_id == from.id) {
         loop.T_old_query = loop.T_old_query * (from.T_wb.inverse() * heir.T_wb);
         loop.query_id = heir.id;
@@ -229,25 +249,25 @@ void KeyframeGraph::applyTo(Sequence* sequence, const GraphCorrection& correctio
   noteDrift(sequence);
 }
 
-std::optional<Pose> KeyframeGraph::drift(std::uint32_t sequence) const {
+std::optional<Pose> KeyframeGraph::drift(SequenceNumber sequence) const {
   const auto found = sequences_.find(sequence);
   if (found == sequences_.end()) return std::nullopt;
   return found->second.T_mw;
 }
 
-bool KeyframeGraph::inMap(std::uint32_t sequence) const {
+bool KeyframeGraph::inMap(SequenceNumber sequence) const {
   const auto found = sequences_.find(sequence);
   return found != sequences_.end() && found->second.component == sequences_.begin()->first;
 }
 
-const std::vector<std::int64_t>& KeyframeGraph::keyframesOf(std::uint32_t sequence) const {
+const std::vector<std::int64_t>& KeyframeGraph::keyframesOf(SequenceNumber sequence) const {
   static const std::vector<std::int64_t> kNone;
   const auto found = sequences_.find(sequence);
   return found == sequences_.end() ? kNone : found->second.ids;
 }
 
-std::vector<std::uint32_t> KeyframeGraph::sequences() const {
-  std::vector<std::uint32_t> numbers;
+std::vector<SequenceNumber> KeyframeGraph::sequences() const {
+  std::vector<SequenceNumber> numbers;
   for (const auto& item : sequences_) numbers.push_back(item.first);
   return numbers;
 }

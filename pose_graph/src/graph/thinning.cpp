@@ -15,9 +15,10 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 struct Candidate {
   std::int64_t id = 0;
-  std::uint32_t component = 0;
+  SequenceNumber component = 0;
   Pose T_mb;
-  bool may_leave = false;
+  bool is_new = false;       ///< stays
+  bool is_loop_end = false;  ///< leaves only when no others are left
   bool is_there = true;
   double distance = kNever;   ///< to the nearest neighbour [m]
   std::size_t neighbour = 0;  ///< its number, where the distance is finite
@@ -29,10 +30,15 @@ class Crowd {
  public:
   Crowd(const KeyframeGraph& graph, const ThinningOptions& options)
       : metres_per_radian_(options.metres_per_radian) {
-    const std::set<std::int64_t> staying = stayingOf(graph, options.newest);
+    std::set<std::int64_t> loop_ends;
+    for (const LoopEdge& loop : graph.loops()) loop_ends.insert({loop.query_id, loop.old_id});
+    // Ids rise with time, over all sequences.
+    auto left = static_cast<std::size_t>(options.newest);
+    left = graph.vertices().size() - std::min(left, graph.vertices().size());
     for (const auto& [id, vertex] : graph.vertices()) {
-      candidates_.push_back({id, graph.component(vertex.sequence), vertex.T_mb,
-                             staying.count(id) == 0, true, kNever, 0});
+      const bool is_new = candidates_.size() >= left;
+      candidates_.push_back({id, graph.component(vertex.sequence), vertex.T_mb, is_new,
+                             loop_ends.count(id) > 0, true, kNever, 0});
     }
     sortAlongLongestSide();
     for (std::size_t i = 0; i < candidates_.size(); ++i) findNeighbour(i);
@@ -42,7 +48,7 @@ class Crowd {
   bool removeOne(std::vector<std::int64_t>* removed) {
     std::size_t chosen = candidates_.size();
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      if (!candidates_[i].may_leave || !candidates_[i].is_there) continue;
+      if (candidates_[i].is_new || !candidates_[i].is_there) continue;
       if (chosen == candidates_.size() || goesBefore(candidates_[i], candidates_[chosen])) {
         chosen = i;
       }
@@ -60,20 +66,9 @@ class Crowd {
   }
 
  private:
-  static std::set<std::int64_t> stayingOf(const KeyframeGraph& graph, int newest) {
-    std::set<std::int64_t> staying;
-    for (const LoopEdge& loop : graph.loops()) staying.insert({loop.query_id, loop.old_id});
-    // Ids rise with time, over all sequences.
-    int left = newest;
-    for (auto it = graph.vertices().rbegin(); it != graph.vertices().rend() && left > 0; ++it) {
-      staying.insert(it->first);
-      --left;
-    }
-    return staying;
-  }
-
   /// Of two as redundant as each other the older leaves: what the newer saw is more like today.
   static bool goesBefore(const Candidate& a, const Candidate& b) {
+    if (a.is_loop_end != b.is_loop_end) return b.is_loop_end;
     return a.distance != b.distance ? a.distance < b.distance : a.id < b.id;
   }
 

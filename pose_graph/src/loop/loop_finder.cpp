@@ -32,10 +32,18 @@ LoopFinder::LoopFinder(std::shared_ptr<const Camera> camera, const PlaceModel& p
 
 LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, const cv::Mat& image,
                                    const Gate& gate) {
-  LoopSearch search;
   WallClock clock;
   DescribedView described = describer_.describe(keyframe, image);
-  search.describe_seconds = clock.lap();
+  const double describe_seconds = clock.lap();
+  LoopSearch search = addKeyframe(keyframe, std::move(described), gate);
+  search.describe_seconds = describe_seconds;
+  return search;
+}
+
+LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, DescribedView described,
+                                   const Gate& gate) {
+  LoopSearch search;
+  WallClock clock;
   const std::vector<LoopCandidate> candidates =
       detector_.detect(keyframe.id, keyframe.stamp, described.bag);
   search.query_seconds = clock.lap();
@@ -44,9 +52,19 @@ LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, const cv::Mat& imag
     search.verify_seconds = clock.lap();
   }
   if (search.accepted() != nullptr) last_loop_ = {keyframe.sequence, keyframe.stamp};
-  view_bytes_ += described.view.memory();
-  views_.emplace(keyframe.id, std::move(described.view));
+  remember(std::move(described.view));
   return search;
+}
+
+void LoopFinder::addStored(KeyframeView view) {
+  detector_.add(view.id, describer_.findWords(&view));
+  remember(std::move(view));
+}
+
+void LoopFinder::remember(KeyframeView view) {
+  view_bytes_ += view.memory();
+  const std::int64_t id = view.id;
+  views_.emplace(id, std::move(view));
 }
 
 bool LoopFinder::isTooSoon(const Keyframe& keyframe) const {

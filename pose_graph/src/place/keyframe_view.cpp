@@ -88,18 +88,25 @@ DescribedView ViewDescriber::describe(const Keyframe& keyframe, const cv::Mat& i
   }
   addCorners(image, &pixels, &features);
   const DescribedPixels described = brief_.describe(image, pixels);
-  ImageWords words = vocabulary_->describe(described.descriptors, options_.direct_index_level);
-  result.bag = std::move(words.bag);
   view.features.reserve(described.indices.size());
   for (std::size_t i = 0; i < described.indices.size(); ++i) {
     ViewFeature feature = features[described.indices[i]];
     feature.descriptor = described.descriptors[i];
-    feature.node = words.nodes[i];
     view.features.push_back(feature);
   }
-  std::stable_sort(view.features.begin(), view.features.end(),
-                   [](const auto& a, const auto& b) { return a.node < b.node; });
+  result.bag = findWords(&view);
   return result;
+}
+
+BagOfWords ViewDescriber::findWords(KeyframeView* view) const {
+  std::vector<BriefDescriptor> descriptors;
+  descriptors.reserve(view->features.size());
+  for (const ViewFeature& feature : view->features) descriptors.push_back(feature.descriptor);
+  ImageWords words = vocabulary_->describe(descriptors, options_.direct_index_level);
+  for (std::size_t i = 0; i < descriptors.size(); ++i) view->features[i].node = words.nodes[i];
+  std::stable_sort(view->features.begin(), view->features.end(),
+                   [](const auto& a, const auto& b) { return a.node < b.node; });
+  return std::move(words.bag);
 }
 
 }  // namespace vins

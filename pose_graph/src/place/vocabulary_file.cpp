@@ -1,9 +1,8 @@
 #include "pose_graph/place/vocabulary_file.h"
 
-#include <filesystem>
-#include <fstream>
 #include <utility>
 
+#include "place/binary_file.h"
 #include "place/byte_reader.h"
 #include "vins_core/text_file.h"
 
@@ -13,29 +12,6 @@ namespace {
 const char* const kMagic = "VINSVOCB";
 constexpr std::size_t kMagicLength = 8;
 constexpr std::uint32_t kVersion = 1;
-
-std::string readBytes(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": is no file");
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  const std::streamoff length = in.tellg();
-  std::string bytes(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');
-  in.seekg(0);
-  if (!in.read(bytes.data(), length)) throw InputError(path + ": cannot be read");
-  return bytes;
-}
-
-std::uint64_t checksum(const char* bytes, std::size_t count) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (std::size_t i = 0; i < count; ++i) {
-    hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3U;
-  }
-  return hash;
-}
-
-template <typename Number>
-void append(const Number& number, std::string* bytes) {
-  bytes->append(reinterpret_cast<const char*>(&number), sizeof(Number));
-}
 
 Vocabulary parseOwn(const std::string& bytes, const std::string& path) {
   ByteReader reader(bytes, path);

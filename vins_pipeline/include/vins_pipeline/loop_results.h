@@ -23,8 +23,9 @@ class LoopResults {
   /// first one of its sequence.
   std::string finalPath(const std::vector<SequencePath>& paths) const;
 
-  /// VINS-Mono's vins_result_loop.csv, a line for each keyframe: stamp [ns], px,py,pz [m],
-  /// qw,qx,qy,qz, in the form of its files (a comma at the end of each line).
+  /// VINS-Mono's vins_result_loop.csv, a line for each keyframe of this run, not of a loaded map:
+  /// stamp [ns], px,py,pz [m], qw,qx,qy,qz, in the form of its files (a comma at the end of each
+  /// line).
   static std::string vinsMonoCsv(const std::vector<SequencePath>& paths);
 
  private:

@@ -14,14 +14,17 @@
 
 namespace vins {
 
+/// Counts runs of the odometry from 0 on. Negative: a run of a loaded map, older than all of these.
+using SequenceNumber = std::int64_t;
+
 /// A keyframe's place in the graph.
 struct KeyframeVertex {
-  std::int64_t id = 0;
-  std::uint32_t sequence = 0;  ///< run of the odometry that it belongs to
-  Stamp stamp = 0;             ///< [ns]
-  Pose T_wb;                   ///< body in its own sequence's odometry world
-  Pose T_mb;                   ///< body in the map; roll and pitch are those of T_wb
-  double travelled = 0.0;      ///< by the odometry since the sequence's first keyframe [m]
+  std::int64_t id = 0;          ///< negative: of a loaded map
+  SequenceNumber sequence = 0;  ///< run of the odometry that it belongs to
+  Stamp stamp = 0;              ///< [ns]
+  Pose T_wb;                    ///< body in its own sequence's odometry world
+  Pose T_mb;                    ///< body in the map; roll and pitch are those of T_wb
+  double travelled = 0.0;       ///< by the odometry since the sequence's first keyframe [m]
 };
 
 /// Relative pose of two keyframes in four degrees of freedom. Each keyframe carries a heading
@@ -69,7 +72,7 @@ struct GraphCorrection {
   /// By keyframe: map <- its odometry's world, yaw and translation only.
   std::map<std::int64_t, Pose> T_mw;
   /// The component that each sequence belonged to then.
-  std::map<std::uint32_t, std::uint32_t> components;
+  std::map<SequenceNumber, SequenceNumber> components;
 };
 
 /// Keyframes, the odometry's edges between them and the loops (T. Qin, P. Li, S. Shen, "VINS-Mono",
@@ -88,10 +91,14 @@ class KeyframeGraph {
                                const std::vector<KeyframeVertex>& vertices,
                                const std::vector<LoopEdge>& loops);
 
+  /// Adds what restore() takes to this graph, whose ids and sequences must be others. Throws as
+  /// restore() does; the graph is then as it was.
+  void addStored(const std::vector<KeyframeVertex>& vertices, const std::vector<LoopEdge>& loops);
+
   /// Appends a keyframe to its sequence; its map pose follows from its sequence's drift. Throws
   /// InputError where the id is there already, the stamp does not rise in the sequence, or the
   /// pose holds no finite numbers.
-  void addKeyframe(std::int64_t id, std::uint32_t sequence, Stamp stamp, const Pose& T_wb);
+  void addKeyframe(std::int64_t id, SequenceNumber sequence, Stamp stamp, const Pose& T_wb);
 
   /// The odometry's last word on a keyframe: its map pose is carried along. False: not there.
   bool updateOdometry(std::int64_t id, const Pose& T_wb);
@@ -102,7 +109,8 @@ class KeyframeGraph {
   LoopOutcome addLoopEdge(const LoopEdge& edge);
 
   /// Takes a keyframe out. Its loops are handed to its nearest neighbour in the sequence, along the
-  /// odometry; without neighbour they go too. False: not there.
+  /// odometry, unless that has a loop with the same sequence already, which says the same: so loops
+  /// do not pile up. Without neighbour they go too. False: not there.
   bool removeKeyframe(std::int64_t id);
 
   /// Moves keyframes as an optimization of an earlier state of this graph wants it. Keyframes added
@@ -112,25 +120,25 @@ class KeyframeGraph {
 
   /// map <- odometry world of a sequence, at its newest keyframe, yaw and translation only: what
   /// "map -> odom" is made of. Nothing for an unknown sequence.
-  std::optional<Pose> drift(std::uint32_t sequence) const;
+  std::optional<Pose> drift(SequenceNumber sequence) const;
 
   /// The sequence whose frame this one shares: itself, or an older one. Throws std::out_of_range
   /// for an unknown sequence.
-  std::uint32_t component(std::uint32_t sequence) const {
+  SequenceNumber component(SequenceNumber sequence) const {
     return sequences_.at(sequence).component;
   }
 
   /// Whether a sequence belongs to the map.
-  bool inMap(std::uint32_t sequence) const;
+  bool inMap(SequenceNumber sequence) const;
 
   /// All keyframes, by id.
   const std::map<std::int64_t, KeyframeVertex>& vertices() const { return vertices_; }
 
   /// Ids of a sequence's keyframes from old to new; empty for an unknown sequence.
-  const std::vector<std::int64_t>& keyframesOf(std::uint32_t sequence) const;
+  const std::vector<std::int64_t>& keyframesOf(SequenceNumber sequence) const;
 
   /// Sequences from old to new.
-  std::vector<std::uint32_t> sequences() const;
+  std::vector<SequenceNumber> sequences() const;
 
   /// Loops as they were measured.
   const std::vector<LoopEdge>& loops() const { return loops_; }
@@ -140,17 +148,19 @@ class KeyframeGraph {
 
  private:
   struct Sequence {
-    std::uint32_t component = 0;
+    SequenceNumber component = 0;
     std::vector<std::int64_t> ids;  ///< from old to new
     Pose T_mw;                      ///< at the newest keyframe there has been
   };
 
   void insert(KeyframeVertex vertex);
-  void joinComponents(std::uint32_t older, std::uint32_t younger);
-  void moveComponent(std::uint32_t component, const Pose& T_new_old);
+  void joinComponents(SequenceNumber older, SequenceNumber younger);
+  void moveComponent(SequenceNumber component, const Pose& T_new_old);
   void noteDrift(Sequence* sequence) const;
   Pose correctionOf(const LoopEdge& edge) const;
   std::optional<std::int64_t> nearestNeighbour(const KeyframeVertex& vertex) const;
+  bool hasLoopWith(const KeyframeVertex& vertex, const LoopEdge& like,
+                   const KeyframeVertex& from) const;
   void handOverLoops(const KeyframeVertex& from, std::optional<std::int64_t> to);
   void applyTo(Sequence* sequence, const GraphCorrection& correction);
   HeadingEdge sequentialEdge(const KeyframeVertex& from, const KeyframeVertex& to) const;
@@ -158,7 +168,7 @@ class KeyframeGraph {
 
   KeyframeGraphOptions options_;
   std::map<std::int64_t, KeyframeVertex> vertices_;
-  std::map<std::uint32_t, Sequence> sequences_;
+  std::map<SequenceNumber, Sequence> sequences_;
   std::vector<LoopEdge> loops_;
 };
 

@@ -20,7 +20,9 @@ struct ThinningOptions {
 
 /// Ids of keyframes that can leave, once there are more than `max_keyframes`: one after the other
 /// that whose nearest neighbour, by position in the map and by the angle between the bodies, is
-/// nearest of all. The newest ones and the ends of loops stay. Keyframes of components that share
+/// nearest of all. The newest ones stay. The ends of loops stay as long as others can leave: where
+/// a place is passed again and again nearly all are such ends, and the map must be bounded all the
+/// same (KeyframeGraph::removeKeyframe() hands their loops on). Keyframes of components that share
 /// no frame are not compared. About N sqrt(N) comparisons of N keyframes; the same on every run.
 std::vector<std::int64_t> redundantKeyframes(const KeyframeGraph& graph,
                                              const ThinningOptions& options);

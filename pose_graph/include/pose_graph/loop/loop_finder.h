@@ -65,6 +65,13 @@ class LoopFinder {
   /// the image (CV_8UC1) is not the camera's.
   LoopSearch addKeyframe(const Keyframe& keyframe, const cv::Mat& image, const Gate& gate = {});
 
+  /// The same with a view that has been made already, as ViewDescriber makes it.
+  LoopSearch addKeyframe(const Keyframe& keyframe, DescribedView described, const Gate& gate = {});
+
+  /// Remembers a view of a stored map without asking. Its features' nodes and words are found
+  /// anew, by this vocabulary. Throws InputError where the id is known.
+  void addStored(KeyframeView view);
+
   /// Forgets a keyframe; false where it is not known.
   bool remove(std::int64_t id);
 
@@ -73,10 +80,13 @@ class LoopFinder {
 
   std::size_t size() const { return views_.size(); }
 
+  const PlaceModel& places() const { return places_; }
+
   /// Bytes of views and index, about; the vocabulary not counted.
   std::size_t memory() const { return view_bytes_ + detector_.database().memory(); }
 
  private:
+  void remember(KeyframeView view);
   bool isTooSoon(const Keyframe& keyframe) const;
   void verify(const KeyframeView& query, const std::vector<LoopCandidate>& candidates,
               const Gate& gate, LoopSearch* search) const;

@@ -73,6 +73,10 @@ class ViewDescriber {
   /// besides. Throws InputError where the image's type or size is not the camera's.
   DescribedView describe(const Keyframe& keyframe, const cv::Mat& image) const;
 
+  /// Finds the words of a view's features: sets their nodes, sorts them by these, and returns the
+  /// bag.
+  BagOfWords findWords(KeyframeView* view) const;
+
  private:
   /// Bearings of extra corners; those without one are left out.
   void addCorners(const cv::Mat& image, std::vector<cv::Point2f>* pixels,

@@ -19,8 +19,16 @@ class PictureStore {
   /// `image`: CV_8UC1.
   void add(std::int64_t id, const cv::Mat& image);
 
+  /// A picture of a stored map; an empty one is passed over.
+  void addEncoded(std::int64_t id, std::vector<unsigned char> picture);
+
   /// The image in its full size, or a black one of `size` where it is not known. CV_8UC1.
   cv::Mat find(std::int64_t id, const cv::Size& size) const;
+
+  /// The picture as it is kept; empty where it is not known.
+  std::vector<unsigned char> encoded(std::int64_t id) const;
+
+  std::size_t size() const { return pictures_.size(); }
 
  private:
   std::size_t count_;
