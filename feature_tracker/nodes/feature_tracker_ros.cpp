@@ -3,6 +3,7 @@
 #include <chrono>
 #include <sstream>
 
+#include <boost/make_shared.hpp>
 #include <cv_bridge/cv_bridge.h>
 #include <opencv2/imgproc.hpp>
 #include <std_msgs/Bool.h>
@@ -18,6 +19,7 @@ namespace {
 constexpr int kImageQueue = 10;
 constexpr int kImuQueue = 2000;
 constexpr double kSmoothing = 0.05;  // weight of the latest image in the mean time
+constexpr double kSilence = 2.0;     // without images, before somebody is told [s]
 
 }  // namespace
 
@@ -53,12 +55,13 @@ void FeatureTrackerRos::readConfiguration() {
   options_ = readFeatureTrackerOptions(parameters);
   const cv::Mat mask = readMaskFile(options_.mask_file, rig_.cameras.front()->imageSize());
   tracker_ = std::make_unique<FeatureTracker>(rig_.cameras, rig_.T_bc, options_, mask);
-  const bool uses_imu = rig_.rotation_known && !rig_.imu_topic.empty();
-  queue_ = std::make_unique<InputQueue>(rig_.cameras.size() == 2, uses_imu);
+  uses_imu_ = rig_.rotation_known && !rig_.imu_topic.empty();
+  queue_ = std::make_unique<InputQueue>(rig_.cameras.size() == 2, uses_imu_);
   std::ostringstream text;
   text << options_;
   ROS_INFO_STREAM("feature tracker, from " << path << ":\n" << text.str());
-  if (!uses_imu) ROS_WARN("no imu_topic or no extrinsic rotation: tracks are predicted without it");
+  if (!uses_imu_)
+    ROS_WARN("no imu_topic or no extrinsic rotation: tracks are predicted without it");
 }
 
 void FeatureTrackerRos::advertise() {
@@ -74,7 +77,7 @@ void FeatureTrackerRos::advertise() {
 void FeatureTrackerRos::subscribe() {
   subscribeCamera(0, rig_.image_topic);
   if (rig_.cameras.size() == 2) subscribeCamera(1, rig_.second_image_topic);
-  if (!rig_.rotation_known || rig_.imu_topic.empty()) return;
+  if (!uses_imu_) return;
   const boost::function<void(const sensor_msgs::ImuConstPtr&)> take =
       [this](const sensor_msgs::ImuConstPtr& message) {
         queue_->addImu(vins_msgs::fromMsg(*message));
@@ -138,6 +141,7 @@ void FeatureTrackerRos::process(const TrackerInput& input) {
           first.raw ? first.raw->header.frame_id : first.compressed->header.frame_id);
   const std::lock_guard<std::mutex> lock(health_mutex_);
   ++health_.images;
+  health_.last_image = ros::WallTime::now();
   health_.statistics = result.statistics;
   if (result.frame) health_.observations = static_cast<int>(result.frame->observations.size());
   health_.milliseconds =
@@ -153,10 +157,11 @@ void FeatureTrackerRos::publish(const FeatureTrackerResult& result,
     restart_publisher_.publish(restart);
   }
   if (!result.frame) return;
-  vins_msgs::FeatureFrame message = vins_msgs::toMsg(*result.frame);
-  message.header.frame_id = frame_id;
+  // Shared, so that nodelets of one manager get it without a copy.
+  const auto message = boost::make_shared<vins_msgs::FeatureFrame>(vins_msgs::toMsg(*result.frame));
+  message->header.frame_id = frame_id;
   feature_publisher_.publish(message);
-  publishPicture(*result.frame, images, message.header);
+  publishPicture(*result.frame, images, message->header);
 }
 
 void FeatureTrackerRos::publishPicture(const FeatureFrame& frame,
@@ -189,30 +194,54 @@ void FeatureTrackerRos::refuse(const std::string& why) {
 }
 
 void FeatureTrackerRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using Level = diagnostic_msgs::DiagnosticStatus;
+  const int dropped = queue_->dropped();
   Health health;
   {
     const std::lock_guard<std::mutex> lock(health_mutex_);
     health = health_;
     health_.last_problem.clear();
+    health_.dropped = dropped;
   }
-  if (!health.last_problem.empty()) {
-    status.summary(Level::ERROR, health.last_problem);
-  } else if (health.images == 0) {
-    status.summary(Level::WARN, "no image yet on " + rig_.image_topic);
-  } else if (health.statistics.inliers < options_.min_tracks) {
-    status.summary(Level::WARN, "too few tracks");
-  } else {
-    status.summary(Level::OK, "tracking");
-  }
+  summarize(health, dropped - health.dropped, &status);
+  status.add("image topic", rig_.image_topic);
+  status.add("IMU topic", rig_.imu_topic);
   status.add("images", health.images);
   status.add("images refused", health.refused);
-  status.add("images dropped", queue_->dropped());
+  status.add("images dropped", dropped);
   status.add("observations", health.observations);
   status.add("inlier ratio", health.statistics.inlier_ratio);
   status.add("mean track length [images]", health.statistics.mean_track_length);
   status.add("gyroscope used", health.statistics.turn_measured);
   status.add("time per image [ms]", health.milliseconds);
+}
+
+void FeatureTrackerRos::summarize(const Health& health, int newly_dropped,
+                                  diagnostic_updater::DiagnosticStatusWrapper* status) const {
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  const std::string of_topic = " on " + rig_.image_topic;
+  if (!health.last_problem.empty()) return status->summary(Level::ERROR, health.last_problem);
+  if (health.images == 0) {
+    return status->summary(Level::WARN, "no image yet" + of_topic +
+                                            ": does the camera or the bag run, is image_topic "
+                                            "right? (rostopic hz)");
+  }
+  status->summary(Level::OK, "tracking");
+  if ((ros::WallTime::now() - health.last_image).toSec() > kSilence) {
+    status->summary(Level::WARN, "images have stopped" + of_topic +
+                                     ": has the bag ended, has the camera stopped?");
+  } else if (health.statistics.inliers < options_.min_tracks) {
+    status->summary(Level::WARN, "only " + std::to_string(health.statistics.inliers) +
+                                     " tracks: is the lens free, is there light and texture?");
+  } else if (uses_imu_ && health.images > 1 && !health.statistics.turn_measured) {
+    status->mergeSummary(Level::WARN, "no IMU samples for the images on " + rig_.imu_topic +
+                                          ": is imu_topic right, do both stamps come from one "
+                                          "clock?");
+  }
+  if (newly_dropped > 0) {
+    status->mergeSummary(Level::WARN, std::to_string(newly_dropped) +
+                                          " images dropped: the processor is too slow; lower "
+                                          "max_cnt, or set freq to 10");
+  }
 }
 
 }  // namespace vins

@@ -44,6 +44,8 @@ class FeatureTrackerRos {
     int observations = 0;
     TrackerStatistics statistics;
     std::string last_problem;
+    ros::WallTime last_image;   ///< when it was worked on
+    int dropped = 0;            ///< images, as told the last time
     double milliseconds = 0.0;  ///< mean of track(), smoothed
   };
 
@@ -61,9 +63,12 @@ class FeatureTrackerRos {
   void hear(const Event& event);
   void refuse(const std::string& why);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void summarize(const Health& health, int newly_dropped,
+                 diagnostic_updater::DiagnosticStatusWrapper* status) const;
 
   ros::NodeHandle handle_, private_handle_;
   RigConfiguration rig_;
+  bool uses_imu_ = false;
   FeatureTrackerOptions options_;
   std::unique_ptr<FeatureTracker> tracker_;
   ImageConversion conversion_;

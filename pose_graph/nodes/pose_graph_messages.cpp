@@ -67,6 +67,7 @@ visualization_msgs::MarkerArray toMarkers(const std::vector<SequencePath>& paths
     if (steps.points.size() > 1) markers.markers.push_back(steps);
   }
   Marker ties = line("loops", 0, Marker::LINE_LIST, map_frame);
+  ties.scale.x = 0.04;  // their ends are often near each other: wider than the paths
   ties.color.r = 1.0F;
   ties.color.g = 0.5F;
   for (const LoopEdge& loop : loops) {

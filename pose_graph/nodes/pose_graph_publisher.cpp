@@ -1,5 +1,6 @@
 #include "pose_graph_publisher.h"
 
+#include <boost/make_shared.hpp>
 #include <cv_bridge/cv_bridge.h>
 #include <nav_msgs/Path.h>
 #include <sensor_msgs/Image.h>
@@ -42,8 +43,9 @@ void PoseGraphPublisher::publish(const std::vector<Event>& events) {
 }
 
 void PoseGraphPublisher::publish(const LoopMatch& match) {
-  vins_msgs::LoopMatch message = vins_msgs::toMsg(match);
-  message.header.frame_id = frames_.odom;
+  // Shared, so that nodelets of one manager get it without a copy.
+  const auto message = boost::make_shared<vins_msgs::LoopMatch>(vins_msgs::toMsg(match));
+  message->header.frame_id = frames_.odom;
   match_.publish(message);
 }
 

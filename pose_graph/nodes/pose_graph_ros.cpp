@@ -69,6 +69,10 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node)
       images_(kRecentImages),
       diagnostics_(node, private_node) {
   const Parameters parameters = loadConfiguration(private_node);
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("pose graph", this, &PoseGraphRos::report);
+  timer_ = node.createTimer(ros::Duration(1.0),
+                            [this](const ros::TimerEvent&) { diagnostics_.update(); });
   if (!configuration_.is_on) {
     ROS_WARN("loop_closure is 0: the map is the odometry's world");
     const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> pass =
@@ -79,14 +83,11 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node)
         node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, pass));
     return;
   }
+  image_topic_ = parameters.text("image_topic");
   graph_ = makeGraph(parameters, configuration_);
   private_node.param("save_map", save_at_end_, save_at_end_);
   loadFirstMap(private_node);
-  diagnostics_.setHardwareID("none");
-  diagnostics_.add("pose graph", this, &PoseGraphRos::report);
-  timer_ = node.createTimer(ros::Duration(1.0),
-                            [this](const ros::TimerEvent&) { diagnostics_.update(); });
-  subscribe(node, parameters.text("image_topic"));
+  subscribe(node);
   services_ = std::make_unique<MapServices>(
       private_node, [this](MapRequest request) { push(std::move(request)); });
   // Last: what has thrown must not leave a thread behind.
@@ -137,8 +138,8 @@ std::string PoseGraphRos::loadMap(const std::string& file) {
   return "loaded " + file + ": " + loaded.describe();
 }
 
-void PoseGraphRos::subscribe(ros::NodeHandle node, const std::string& image_topic) {
-  subscribers_.push_back(node.subscribe(image_topic, 10, &PoseGraphRos::onImage, this));
+void PoseGraphRos::subscribe(ros::NodeHandle node) {
+  subscribers_.push_back(node.subscribe(image_topic_, 10, &PoseGraphRos::onImage, this));
   const auto take = [&](auto message, const std::string& topic) {
     using Message = decltype(message);
     const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
@@ -269,18 +270,28 @@ void PoseGraphRos::hear(const std::vector<Event>& events) {
   while (recent_.size() > kRecentEvents) recent_.pop_front();
 }
 
+void PoseGraphRos::summarize(diagnostic_updater::DiagnosticStatusWrapper* status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  if (!configuration_.is_on) {
+    return status->summary(DiagnosticStatus::OK, "loop closing is off (loop_closure: 0)");
+  }
+  const bool is_empty = statistics_.keyframes == 0;
+  status->summary(DiagnosticStatus::OK, is_empty ? "no keyframe yet" : "mapping");
+  if (without_image_ > 0 && without_image_ * 2 > statistics_.keyframes) {
+    status->mergeSummary(DiagnosticStatus::WARN,
+                         "most keyframes come without an image: no loops will be found; does " +
+                             image_topic_ + " reach this node, uncompressed?");
+  }
+  if (dropped_ > dropped_told_) {
+    status->mergeSummary(DiagnosticStatus::WARN,
+                         "falls behind: set skip_cnt or raise skip_dis, or free the processor");
+  }
+  dropped_told_ = dropped_;
+}
+
 void PoseGraphRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  using diagnostic_msgs::DiagnosticStatus;
-  if (statistics_.keyframes == 0) {
-    status.summary(DiagnosticStatus::OK, "no keyframe yet");
-  } else {
-    status.summary(DiagnosticStatus::OK, "mapping");
-  }
-  if (without_image_ > 0 && without_image_ * 2 > statistics_.keyframes) {
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "images do not reach the pose graph: no loops will be found");
-  }
+  summarize(&status);
   status.add("keyframes", statistics_.keyframes);
   status.add("keyframes left out", statistics_.skipped);
   status.add("keyframes without image", without_image_);

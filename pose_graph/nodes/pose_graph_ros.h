@@ -52,7 +52,7 @@ class PoseGraphRos {
   using Input =
       std::variant<Keyframe, KeyframePoseUpdate, LoopEdge, nav_msgs::Odometry, MapRequest>;
 
-  void subscribe(ros::NodeHandle node, const std::string& image_topic);
+  void subscribe(ros::NodeHandle node);
   void onImage(const sensor_msgs::Image::ConstPtr& message);
   void push(Input input);
   void work();
@@ -68,8 +68,10 @@ class PoseGraphRos {
   void showLoop(const Keyframe& keyframe, const cv::Mat& image, const PoseGraphResult& result);
   void hear(const std::vector<Event>& events);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void summarize(diagnostic_updater::DiagnosticStatusWrapper* status);
 
   PoseGraphConfiguration configuration_;
+  std::string image_topic_;
   std::unique_ptr<PoseGraph> graph_;  // the worker's alone
   PoseGraphPublisher publisher_;
   PictureStore pictures_;
@@ -82,6 +84,7 @@ class PoseGraphRos {
   std::deque<Input> queue_;
   RecentImages images_;
   std::size_t dropped_ = 0;
+  std::size_t dropped_told_ = 0;  // in the last diagnostics
   std::size_t without_image_ = 0;
   bool stopping_ = false;
   PoseGraphStatistics statistics_;

@@ -132,6 +132,10 @@ class LaunchFiles(unittest.TestCase):
         self.assertEqual(sorted(nodes), sorted(STAGES))
         self.assertIn('/camera/nodelet_manager', nodes['pose_graph'].args)
 
+    def test_the_pose_graph_can_run_elsewhere(self):
+        config = load('vins.launch', 'pose_graph:=false')
+        self.assertEqual(sorted(nodes_of(config)), ['feature_tracker', 'vins_estimator'])
+
     def test_rviz_comes_where_it_is_asked_for_with_a_configuration_that_is_there(self):
         for config in [load('vins_rviz.launch'), load('euroc.launch', 'rviz:=true')]:
             path = nodes_of(config)['rviz'].args.split('"')[1]

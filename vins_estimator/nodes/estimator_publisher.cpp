@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <boost/make_shared.hpp>
 #include <nav_msgs/Odometry.h>
 #include <std_msgs/Float64.h>
 #include <visualization_msgs/Marker.h>
@@ -68,14 +69,14 @@ void EstimatorPublisher::publish(const PropagatedState& state) {
 }
 
 void EstimatorPublisher::publishOdometry(const Odometry& odometry) {
-  const nav_msgs::Odometry message =
+  const auto message = boost::make_shared<nav_msgs::Odometry>(
       toOdometry(odometry.stamp, odometry.state, odometry.angular_velocity_b, odometry.covariance,
-                 0.0, frames_.odom, frames_.body);
+                 0.0, frames_.odom, frames_.body));
   odometry_.publish(message);
   geometry_msgs::PoseStamped pose;
-  pose.header = message.header;
-  pose.pose = message.pose.pose;
-  path_.header.stamp = message.header.stamp;
+  pose.header = message->header;
+  pose.pose = message->pose.pose;
+  path_.header.stamp = message->header.stamp;
   path_.poses.push_back(pose);
   // Half goes at once, so that the cost is small on average.
   if (path_.poses.size() > kMaxPathPoses) {
@@ -172,19 +173,23 @@ void EstimatorPublisher::publishClouds(const EstimatorResult& result) {
 
 void EstimatorPublisher::publishKeyframes(const EstimatorResult& result) {
   for (const Keyframe& keyframe : result.keyframes) {
-    vins_msgs::Keyframe message = vins_msgs::toMsg(keyframe);
-    message.header.frame_id = frames_.odom;
+    // Shared, so that nodelets of one manager get it without a copy.
+    const auto message = boost::make_shared<vins_msgs::Keyframe>(vins_msgs::toMsg(keyframe));
+    message->header.frame_id = frames_.odom;
     keyframe_.publish(message);
   }
   for (const KeyframePoseUpdate& update : result.left) {
-    vins_msgs::KeyframePoseUpdate message = vins_msgs::toMsg(update);
-    message.header.frame_id = frames_.odom;
+    const auto message =
+        boost::make_shared<vins_msgs::KeyframePoseUpdate>(vins_msgs::toMsg(update));
+    message->header.frame_id = frames_.odom;
     left_.publish(message);
   }
 }
 
 void EstimatorPublisher::publishLoopEdges(const EstimatorResult& result) {
-  for (const LoopEdge& edge : result.loop_edges) loop_edge_.publish(vins_msgs::toMsg(edge));
+  for (const LoopEdge& edge : result.loop_edges) {
+    loop_edge_.publish(boost::make_shared<vins_msgs::LoopEdge>(vins_msgs::toMsg(edge)));
+  }
 }
 
 }  // namespace vins

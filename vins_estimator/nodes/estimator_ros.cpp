@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::size_t kMaxFramesWaiting = 40;  // two seconds at 20 Hz
 constexpr std::size_t kRecentEvents = 5;
+constexpr std::size_t kManyWaiting = 5;  // frames: a quarter of a second behind at 20 Hz
+constexpr double kSilence = 2.0;         // without input, before somebody is told [s]
+const char* const kFeatureTopic = "/feature_tracker/feature";
 
 Parameters loadConfiguration(const ros::NodeHandle& private_node) {
   std::string path;
@@ -39,6 +42,9 @@ EstimatorFrames framesOf(const ros::NodeHandle& private_node) {
 void log(const Event& event) {
   if (event.severity == Severity::kError) {
     ROS_ERROR_STREAM(event);
+  } else if (event.code == "solver_time") {
+    // With every frame on a slow machine: enough to say it now and then.
+    ROS_WARN_STREAM_THROTTLE(5.0, event);
   } else if (event.severity == Severity::kWarning) {
     ROS_WARN_STREAM(event);
   } else {
@@ -66,13 +72,12 @@ EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node)
       propagator_(options_.imu),
       diagnostics_(node, private_node) {
   const Parameters parameters = loadConfiguration(private_node);
-  const std::string imu_topic = parameters.text("imu_topic");
+  imu_topic_ = parameters.text("imu_topic");
   diagnostics_.setHardwareID("visual-inertial rig");
   diagnostics_.add("estimator", this, &EstimatorRos::report);
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
-  imu_ = node.subscribe(imu_topic, 2000, &EstimatorRos::onImu, this, no_delay);
-  features_ =
-      node.subscribe("/feature_tracker/feature", 100, &EstimatorRos::onFeatures, this, no_delay);
+  imu_ = node.subscribe(imu_topic_, 2000, &EstimatorRos::onImu, this, no_delay);
+  features_ = node.subscribe(kFeatureTopic, 100, &EstimatorRos::onFeatures, this, no_delay);
   matches_ = node.subscribe("/pose_graph/loop_match", 100, &EstimatorRos::onLoopMatch, this);
   restarts_ = node.subscribe("/feature_tracker/restart", 10, &EstimatorRos::onRestart, this);
   reset_ = private_node.advertiseService("reset", &EstimatorRos::onReset, this);
@@ -136,7 +141,9 @@ bool EstimatorRos::onReset(std_srvs::Trigger::Request& /*request*/,
 void EstimatorRos::push(Input input) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (input.imu) last_imu_ = ros::WallTime::now();
     if (input.frame) {
+      last_frame_ = ros::WallTime::now();
       // Falling behind for good: new frames are left out, the IMU goes on.
       if (frames_waiting_ >= kMaxFramesWaiting) {
         ++frames_dropped_;
@@ -203,20 +210,57 @@ void EstimatorRos::restart() {
   propagator_.reset();
 }
 
-void EstimatorRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+std::string EstimatorRos::missingInput() const {
+  const ros::WallTime now = ros::WallTime::now();
+  if (last_imu_.isZero()) {
+    return "no IMU sample yet on " + imu_topic_ +
+           ": does the IMU or the bag run, is imu_topic right? (rostopic hz)";
+  }
+  if (last_frame_.isZero()) {
+    return std::string("no features yet on ") + kFeatureTopic + ": does feature_tracker run?";
+  }
+  if ((now - last_imu_).toSec() > kSilence) {
+    return "IMU samples have stopped on " + imu_topic_ +
+           ": has the bag ended, has the IMU's driver stopped?";
+  }
+  if ((now - last_frame_).toSec() > kSilence) {
+    return std::string("features have stopped on ") + kFeatureTopic +
+           ": have images stopped, or feature_tracker?";
+  }
+  return "";
+}
+
+std::string EstimatorRos::waitingReason() const {
+  for (auto event = recent_.rbegin(); event != recent_.rend(); ++event) {
+    if (event->code.rfind("init_", 0) == 0) return event->text;
+  }
+  return "initializing: move the camera sideways and up and down, with texture in view";
+}
+
+void EstimatorRos::summarize(diagnostic_updater::DiagnosticStatusWrapper* status) {
   using diagnostic_msgs::DiagnosticStatus;
+  const std::string missing = missingInput();
+  if (!missing.empty()) return status->summary(DiagnosticStatus::WARN, missing);
   if (latest_.status == EstimatorStatus::kTracking) {
-    status.summary(DiagnosticStatus::OK, "tracking");
+    status->summary(DiagnosticStatus::OK, "tracking");
   } else {
-    const char* advice =
-        "initializing: move the camera sideways and up and down, with texture in view";
-    status.summary(DiagnosticStatus::WARN, advice);
+    status->summary(DiagnosticStatus::WARN, waitingReason());
   }
   if (latest_.statistics.features < options_.min_tracks) {
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "too few features: is the lens free, is there light?");
+    status->mergeSummary(DiagnosticStatus::WARN,
+                         "too few features: is the lens free, is there light?");
   }
+  if (frames_waiting_ >= kManyWaiting || frames_dropped_ > frames_dropped_told_) {
+    status->mergeSummary(DiagnosticStatus::WARN,
+                         "falls behind: lower max_cnt or max_num_iterations, set motion_only_ba "
+                         "to 1 or freq to 10, or free the processor");
+  }
+  frames_dropped_told_ = frames_dropped_;
+}
+
+void EstimatorRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  summarize(&status);
   status.add("state", toString(latest_.status));
   status.add("features", latest_.statistics.features);
   status.add("landmarks", latest_.statistics.landmarks);

@@ -59,8 +59,12 @@ class EstimatorRos {
   void handle(const EstimatorResult& result);
   void restart();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void summarize(diagnostic_updater::DiagnosticStatusWrapper* status);
+  std::string missingInput() const;
+  std::string waitingReason() const;
 
   EstimatorOptions options_;
+  std::string imu_topic_;
   Estimator estimator_;  // the worker's alone
   EstimatorPublisher publisher_;
   FeatureNumbering numbering_;  // of the features' callback
@@ -73,6 +77,8 @@ class EstimatorRos {
   std::deque<Input> queue_;
   std::size_t frames_waiting_ = 0;
   std::size_t frames_dropped_ = 0;
+  std::size_t frames_dropped_told_ = 0;  // in the last diagnostics
+  ros::WallTime last_imu_, last_frame_;  // of arrival; zero: none yet
   bool stopping_ = false;
   EstimatorResult latest_;
   std::deque<Event> recent_;
