@@ -3,9 +3,11 @@
 import json
 import os
 import unittest
+from unittest import mock
 
 import numpy as np
 from support import TOOL, FolderTest, about, moved, run_tool, wandering, write_tum
+from vins_evaluation import command_line
 
 
 class CommandLineTest(FolderTest):
@@ -27,6 +29,14 @@ class CommandLineTest(FolderTest):
         self.assertRegex(done.stderr, pattern)
         self.assertNotIn("Traceback", done.stderr)
         self.assertEqual(done.stdout, "")
+
+    def test_ctrl_c_leaves_no_half_written_report(self):
+        report = self.path("r.json")
+        with mock.patch.object(command_line.os, "replace", side_effect=KeyboardInterrupt), \
+                mock.patch("builtins.print"):
+            code = command_line.main([self.path("truth.txt"), self.path("a.txt"), "--json", report])
+        self.assertEqual(code, 130)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.txt", "b.txt", "truth.txt"])
 
     def test_two_estimates_with_all_reports(self):
         done = self.run_here("truth.txt", "a.txt", "b.txt", "--names", "good", "10 % too large",

@@ -18,7 +18,7 @@ errors. A trajectory is a TUM file, a csv file of EuRoC or VINS-Mono, a EuRoC
 ASL folder (its ground truth), or a topic of a bag as FILE.bag:/topic.
 """
 _EPILOG = """\
-exit code: 0 evaluated, 1 input that cannot be evaluated, 2 wrong usage
+exit code: 0 evaluated, 1 input that cannot be evaluated, 2 wrong usage, 130 interrupted
 """
 
 
@@ -40,6 +40,9 @@ def main(arguments):
     except EvaluationError as error:
         print("evaluate_trajectory: error: %s" % error, file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("evaluate_trajectory: interrupted", file=sys.stderr)
+        return 130
     return 0
 
 
@@ -79,9 +82,11 @@ def _write(path, text):
             file.write(text)
         os.replace(aside, path)
     except OSError as error:
+        raise EvaluationError("%s: cannot write it: %s" % (path, error.strerror)) from error
+    finally:
+        # Still there where writing failed or was interrupted.
         if os.path.exists(aside):
             os.remove(aside)
-        raise EvaluationError("%s: cannot write it: %s" % (path, error.strerror)) from error
 
 
 def _number(text):
