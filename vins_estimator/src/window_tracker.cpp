@@ -1,9 +1,9 @@
 #include "window_tracker.h"
 
-#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "vins_core/wall_clock.h"
 #include "vins_estimator/health/rest_check.h"
 #include "vins_estimator/visual/keyframe_choice.h"
 #include "vins_estimator/window/loop_closing.h"
@@ -15,16 +15,7 @@
 namespace vins {
 namespace {
 
-/// Seconds that a piece of work takes, for the statistics.
-class StopWatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+constexpr int kMinMatches = 15;  // of a loop that is worth its place in the window
 
 /// What is known of the rig before anything is seen.
 Matrix7d rigCovariance(const EstimatorOptions& options) {
@@ -117,18 +108,27 @@ NavState WindowTracker::append(const FrameMeasurements& measurements, bool stand
   return predicted;
 }
 
-bool WindowTracker::adjust(bool motion_only, EstimatorResult* result) {
-  triangulateTracks(&window_);
-  const StopWatch watch;
+SolveSummary WindowTracker::solve(bool motion_only) {
   WindowSolverOptions solver;
   solver.max_num_iterations = options_.max_num_iterations;
   solver.max_solver_time = options_.max_solver_time;
   const std::size_t frames = window_.frames.size();
   motion_only_ = motion_only && frames > 2 && !isKeyframeAt(frames - 2);
-  const SolveSummary summary =
-      motion_only_ ? solveNewestFrames(solver, &window_) : solveWindow(solver, &window_);
+  if (motion_only_) return solveNewestFrames(solver, &window_);
+  const SolveSummary summary = solveWindow(solver, &window_);
+  if (summary.usable || !window_.loop) return summary;
+  // Odometry is worth more than a loop.
+  window_.loop.reset();
+  return solveWindow(solver, &window_);
+}
+
+bool WindowTracker::adjust(bool motion_only, EstimatorResult* result) {
+  triangulateTracks(&window_);
+  WallClock watch;
+  forgetFadedLoop(kMinMatches, &window_);
+  const SolveSummary summary = solve(motion_only);
   result->statistics.outliers = removeOutliers({}, &window_);
-  result->statistics.solve_seconds = watch.seconds();
+  result->statistics.solve_seconds = watch.lap();
   reportSolution(summary, result);
   if (!summary.usable) return false;
   window_.frames.back().covariance = summary.newest_covariance;
@@ -155,7 +155,6 @@ void WindowTracker::reportSolution(const SolveSummary& summary, EstimatorResult*
 
 /// Hands the loop's refined pose out, once, when it has been solved for the first time.
 void WindowTracker::reportLoop(const SolveSummary& summary, EstimatorResult* result) {
-  constexpr int kMinMatches = 15;
   if (!loop_is_new_ || !summary.loop) return;
   loop_is_new_ = false;
   const std::optional<LoopEdge> edge = loopEdge(window_, *summary.loop, kMinMatches);
@@ -179,11 +178,11 @@ void WindowTracker::slide(std::uint32_t sequence, EstimatorResult* result) {
   }
   makeKeyframe(second, sequence, result);
   if (window_.frames.size() <= static_cast<std::size_t>(options_.window_size)) return;
-  const StopWatch watch;
+  WallClock watch;
   result->left.push_back(poseUpdateOf(window_.frames.front(), sequence));
   forgetLeavingLoop(&window_);
   marginalizeOldest(WindowSolverOptions{}.huber, &window_);
-  result->statistics.marginalize_seconds = watch.seconds();
+  result->statistics.marginalize_seconds = watch.lap();
 }
 
 bool WindowTracker::isKeyframeAt(std::size_t index) const {

@@ -49,6 +49,7 @@ class WindowTracker {
 
  private:
   bool isKeyframeAt(std::size_t index) const;
+  SolveSummary solve(bool motion_only);
   void makeKeyframe(std::size_t index, std::uint32_t sequence, EstimatorResult* result);
   void reportSolution(const SolveSummary& summary, EstimatorResult* result);
   void reportLoop(const SolveSummary& summary, EstimatorResult* result);

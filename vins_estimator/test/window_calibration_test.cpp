@@ -224,6 +224,24 @@ TEST_F(LoopInWindow, EndsWhenItsQueryLeaves) {
   EXPECT_FALSE(window.loop.has_value());
 }
 
+TEST_F(LoopInWindow, EndsWhenItsLandmarksHaveGone) {
+  SlidingWindow& window = synthetic_.window;
+  ASSERT_TRUE(addLoop(match_, 2.0, &window));
+  forgetFadedLoop(60, &window);
+  ASSERT_TRUE(window.loop.has_value());
+  // Fifty of the sixty are not in the window any more.
+  std::map<std::int64_t, BearingMeasurement> renamed;
+  for (const auto& [id, measured] : window.loop->measured) {
+    renamed.emplace(renamed.size() < 50 ? id + 1000 : id, measured);
+  }
+  window.loop->measured = {renamed.begin(), renamed.end()};
+  forgetFadedLoop(10, &window);
+  EXPECT_TRUE(window.loop.has_value());
+  forgetFadedLoop(11, &window);
+  EXPECT_FALSE(window.loop.has_value());
+  EXPECT_TRUE(solveWindow(thorough(), &window).usable);
+}
+
 TEST(MotionOnly, BringsTheNewestFramesBackAndMovesNothingElse) {
   SyntheticWindow synthetic = makeWindow(8, 60, 0.0, always);
   SlidingWindow& window = synthetic.window;

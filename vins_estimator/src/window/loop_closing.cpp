@@ -16,6 +16,16 @@ double inverseSigma(const Landmark& track, double match_noise) {
   return track.observations.back().measured.inverse_sigma / match_noise;
 }
 
+/// Matches whose landmarks are still in the window.
+int countMatches(const SlidingWindow& window) {
+  const auto& tracks = window.landmarks.tracks();
+  return static_cast<int>(std::count_if(window.loop->measured.begin(), window.loop->measured.end(),
+                                        [&tracks](const auto& match) {
+                                          const auto track = tracks.find(match.first);
+                                          return track != tracks.end() && track->second.has_depth;
+                                        }));
+}
+
 }  // namespace
 
 bool addLoop(const LoopMatch& match, double match_noise, SlidingWindow* window) {
@@ -45,11 +55,7 @@ bool addLoop(const LoopMatch& match, double match_noise, SlidingWindow* window) 
 
 std::optional<LoopEdge> loopEdge(const SlidingWindow& window, const LoopEstimate& estimate,
                                  int min_inliers) {
-  int inliers = 0;
-  for (const auto& [id, measured] : window.loop->measured) {
-    const auto track = window.landmarks.tracks().find(id);
-    if (track != window.landmarks.tracks().end() && track->second.has_depth) ++inliers;
-  }
+  const int inliers = countMatches(window);
   if (inliers < min_inliers) return std::nullopt;
   LoopEdge edge;
   edge.query_id = window.loop->query_id;
@@ -61,6 +67,10 @@ std::optional<LoopEdge> loopEdge(const SlidingWindow& window, const LoopEstimate
   edge.covariance = turn * estimate.covariance * turn.transpose();
   edge.inliers = inliers;
   return edge;
+}
+
+void forgetFadedLoop(int min_matches, SlidingWindow* window) {
+  if (window->loop && countMatches(*window) < min_matches) window->loop.reset();
 }
 
 void forgetLeavingLoop(SlidingWindow* window) {

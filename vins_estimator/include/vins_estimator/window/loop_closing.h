@@ -19,6 +19,10 @@ bool addLoop(const LoopMatch& match, double match_noise, SlidingWindow* window);
 std::optional<LoopEdge> loopEdge(const SlidingWindow& window, const LoopEstimate& estimate,
                                  int min_inliers);
 
+/// Forgets the loop where fewer matches than that are left whose landmarks have a depth: in a fast
+/// turn the landmarks go before their keyframe does, and the old one would hang in the air.
+void forgetFadedLoop(int min_matches, SlidingWindow* window);
+
 /// Forgets the loop if its query keyframe is the oldest frame, which is about to go.
 void forgetLeavingLoop(SlidingWindow* window);
 
