@@ -20,11 +20,12 @@ table is the baseline with which
 
     scripts/regress
 
-compares the code as it is; `scripts/regress --record` measures it anew and rewrites this page. The
-position error (ATE) is the RMSE after alignment by position and yaw; `odometry` is each pose as it
-was known at its moment, `with loops` the path in the end. The CPU time a frame is that of tracker
-and estimator together, and depends on the machine; all else does not, but for the last bits of
-another processor's arithmetic.
+compares the code as it is; `scripts/regress --record` measures it anew and rewrites this page.
+ATE is the position error (RMSE after alignment by position and yaw) of the odometry, each pose as
+it was known at its moment; `with loops` is that of the path in the end. `initialised` and
+`completeness` count from the first pose of the ground truth. The CPU time is that of tracker and
+estimator together, and depends on the machine and what else it does; all else does not, but for the
+last bits of another processor's arithmetic.
 
 %s
 """
@@ -83,7 +84,7 @@ def parser():
         description="Runs a fixed set of recordings through run_bag and prints the figures beside "
                     "the baseline's.\nSimulated ones are rendered once, into the build folder; "
                     "real ones are looked for in\n../shared/data or where VINS_SHARED_DATA says.",
-        epilog="clearly worse is:\n%s\nexit code: 0 nothing is clearly worse, 1 something is, "
+        epilog="clearly worse (marked by \"!\") is:\n%s\nexit code: 0 nothing is clearly worse, 1 something is, "
                "2 it could not be run" % tolerances)
     made.add_argument("--record", action="store_true",
                       help="make these figures the baseline: tests/regression/baseline.json and "

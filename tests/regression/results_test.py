@@ -51,13 +51,18 @@ class TablesTest(unittest.TestCase):
 
     def test_a_worse_figure_is_marked(self):
         text = results.text_table([("hall", dict(BASELINE, ate_m=0.2), BASELINE)])
-        marked = [line for line in text.splitlines() if "WORSE" in line]
-        self.assertEqual(len(marked), 1, text)
-        self.assertIn("0.200", marked[0])
-        self.assertIn("0.100", marked[0])
+        heading, now, before = text.splitlines()
+        self.assertEqual(now.count("!"), 1, text)
+        self.assertIn("0.200!", now)
+        self.assertIn("0.100 ", before)
+        self.assertNotIn("!", before)
+        place = heading.index("ATE [m]") + len("ATE [m]")
+        self.assertEqual(now[place - 5:place], "0.200", "below its heading:\n" + text)
 
     def test_a_recording_that_is_not_here_is_told(self):
-        self.assertIn("not here", results.text_table([("mh_01", None, BASELINE)]))
+        text = results.text_table([("mh_01", None, BASELINE)])
+        self.assertIn("not here", text)
+        self.assertNotIn("!", text)
 
     def test_the_page_has_a_row_for_each_recording(self):
         text = results.markdown_table({"hall": BASELINE}, {"hall": "a hall", "yard": "a yard"})

@@ -9,17 +9,17 @@ import os
 Figure = collections.namedtuple("Figure", "key heading format is_worse tolerance")
 
 FIGURES = (
-    Figure("ate_m", "odometry: ATE [m]", "%.3f",
+    Figure("ate_m", "ATE [m]", "%.3f",
            lambda now, before: now > 1.25 * before + 0.01, "a quarter and 1 cm more"),
-    Figure("loop_ate_m", "with loops: ATE [m]", "%.3f",
+    Figure("loop_ate_m", "with loops [m]", "%.3f",
            lambda now, before: now > 1.25 * before + 0.01, "a quarter and 1 cm more"),
     Figure("scale_error_percent", "scale error [%]", "%+.2f",
            lambda now, before: abs(now) > abs(before) + 0.3, "0.3 points more"),
-    Figure("initialised_s", "initialised after [s]", "%.1f",
+    Figure("initialised_s", "initialised [s]", "%.1f",
            lambda now, before: now > before + 1.0, "1 s later"),
     Figure("completeness_percent", "completeness [%]", "%.1f",
            lambda now, before: now < before - 2.0, "2 points less"),
-    Figure("frame_ms", "CPU a frame [ms]", "%.1f",
+    Figure("frame_ms", "CPU/frame [ms]", "%.1f",
            lambda now, before: now > 1.5 * before + 2.0, "half and 2 ms more"),
     Figure("loops", "loops", "%d",
            lambda now, before: now < 0.75 * before - 1.0, "a quarter and one less"),
@@ -70,23 +70,26 @@ def worse(now, before):
 
 
 def text_table(rows):
-    """Lines for the terminal: each figure as it is, as it was, and a mark where it is worse.
+    """A table for the terminal: a line for each run, and below it one for its baseline.
 
     Args:
-        rows: list of (name, now or None, before or None).
+        rows: list of (name, now or None, before or None). What is clearly worse has a "!" behind.
     """
-    lines = []
+    headings = [figure.heading for figure in FIGURES]
+    lines = ["%-12s%s" % ("", "".join("%*s " % (len(text) + 2, text) for text in headings))]
     for name, now, before in rows:
-        lines.append(name)
         if now is None:
-            lines.append("  not run: its recording is not here (VINS_SHARED_DATA)")
-            continue
-        bad = worse(now, before or {})
-        for figure in FIGURES:
-            lines.append("  %-24s%10s   baseline%10s%s" % (
-                figure.heading, _shown(figure, now), _shown(figure, before or {}),
-                "   WORSE" if figure in bad else ""))
-    return "\n".join(lines) + "\n"
+            lines.append("%-12snot run: its recording is not here (VINS_SHARED_DATA)" % name)
+        else:
+            lines.append(_line(name, now, worse(now, before or {})))
+        lines.append(_line("  baseline", before or {}, []))
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def _line(name, figures, marked):
+    cells = ["%*s%s" % (len(figure.heading) + 2, _shown(figure, figures),
+                        "!" if figure in marked else " ") for figure in FIGURES]
+    return "%-12s%s" % (name, "".join(cells))
 
 
 def markdown_table(baseline, descriptions):
