@@ -62,10 +62,10 @@ PoseGraphResult PoseGraph::addKeyframe(const Keyframe& keyframe, const cv::Mat& 
   return result;
 }
 
-PoseGraphResult PoseGraph::addKeyframe(const Keyframe& keyframe, DescribedView described) {
+PoseGraphResult PoseGraph::addDescribed(const Keyframe& keyframe, DescribedView described) {
   PoseGraphResult result;
   if (!addToGraph(keyframe, &result)) return result;
-  take(keyframe, finder_.addKeyframe(keyframe, std::move(described)), &result);
+  take(keyframe, finder_.addDescribed(keyframe, std::move(described)), &result);
   removeRedundant();
   return result;
 }

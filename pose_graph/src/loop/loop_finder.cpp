@@ -34,12 +34,12 @@ LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, const cv::Mat& imag
   WallClock clock;
   DescribedView described = describer_.describe(keyframe, image);
   const double describe_seconds = clock.lap();
-  LoopSearch search = addKeyframe(keyframe, std::move(described));
+  LoopSearch search = addDescribed(keyframe, std::move(described));
   search.describe_seconds = describe_seconds;
   return search;
 }
 
-LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, DescribedView described) {
+LoopSearch LoopFinder::addDescribed(const Keyframe& keyframe, DescribedView described) {
   LoopSearch search;
   WallClock clock;
   const std::vector<LoopCandidate> candidates =

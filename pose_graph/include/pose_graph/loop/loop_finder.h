@@ -61,7 +61,7 @@ class LoopFinder {
   LoopSearch addKeyframe(const Keyframe& keyframe, const cv::Mat& image);
 
   /// The same with a view that has been made already, as ViewDescriber makes it.
-  LoopSearch addKeyframe(const Keyframe& keyframe, DescribedView described);
+  LoopSearch addDescribed(const Keyframe& keyframe, DescribedView described);
 
   /// Remembers a view of a stored map without asking. Its features' nodes and words are found
   /// anew, by this vocabulary. Throws InputError where the id is known.
