@@ -79,11 +79,11 @@ PoseGraphResult PoseGraph::addKeyframe(const Keyframe& keyframe, const cv::Mat& 
   return result;
 }
 
-PoseGraphResult PoseGraph::addKeyframe(const Keyframe& keyframe, DescribedView described) {
+PoseGraphResult PoseGraph::addDescribed(const Keyframe& keyframe, DescribedView described) {
   PoseGraphResult result;
   if (!addToGraph(keyframe, &result)) return result;
   const LoopFinder::Gate gate = gateFor(keyframe.stamp, &result.events);
-  take(keyframe, finder_.addKeyframe(keyframe, std::move(described), gate), &result);
+  take(keyframe, finder_.addDescribed(keyframe, std::move(described), gate), &result);
   removeRedundant();
   return result;
 }

@@ -219,7 +219,7 @@ TEST_F(NodeTest, DoesWhatItsTopicsPromise) {
 TEST_F(NodeTest, SavesAndLoadsMaps) {
   const testing::TempFolder folder("pose_graph_node_test");
   next_id_ = 1000;  // the node knows the first ones already
-  SecondNode second("/second", "_save_map:=" + folder.file("new/end.map"));
+  SecondNode second("second", "_save_map:=" + folder.file("new/end.map"));
   ASSERT_TRUE(waitFor([this] { return keyframes_.getNumSubscribers() > 1; }));
   ASSERT_TRUE(waitFor([this] { return images_.getNumSubscribers() > 1; }));
   for (int place = 40; place < 46; ++place) ASSERT_TRUE(visit(place)) << place;
@@ -242,13 +242,13 @@ TEST_F(NodeTest, SavesAndLoadsMaps) {
   nav_msgs::Path::ConstPtr base;
   hear<nav_msgs::Path>("/third/base_path", &base);
   {
-    SecondNode third("/third", "_load_map:=" + folder.file("new/end.map"));
+    SecondNode third("third", "_load_map:=" + folder.file("new/end.map"));
     ASSERT_TRUE(waitFor([&] { return base != nullptr; })) << "before any keyframe";
     EXPECT_EQ(base->poses.size(), 6u);
     const auto loaded = ask("/third/load_map", folder.file("a.map"));
     EXPECT_TRUE(loaded.success) << loaded.message;
   }
-  SecondNode fourth("/fourth", "_load_map:=" + folder.file("missing.map"));
+  SecondNode fourth("fourth", "_load_map:=" + folder.file("missing.map"));
   EXPECT_EQ(fourth.wait(), 1) << "a map that is not there";
 }
 

@@ -138,7 +138,7 @@ TEST_F(PoseGraphTest, HoveringAddsNothing) {
   // A turn on the spot shows something new.
   Keyframe turned = revisits_.keyframe(next_id_++, 0);
   turned.T_wb.rotation = yawRotation(0.1) * turned.T_wb.rotation;
-  EXPECT_TRUE(graph->addKeyframe(turned, cv::Mat()).is_kept);
+  EXPECT_TRUE(graph->addKeyframe(turned, {}).is_kept);
 }
 
 TEST_F(PoseGraphTest, SkipCountLeavesOutSoManyAfterEach) {

@@ -4,6 +4,7 @@
 
 #include "camera_model/camera_file.h"
 #include "feature_tracker/mask_file.h"
+#include "vins_core/input_error.h"
 
 namespace vins {
 namespace {
@@ -21,6 +22,11 @@ void knowKeysOfOthers(const Parameters& parameters) {
 
 void append(std::vector<Event>* all, const std::vector<Event>& events) {
   all->insert(all->end(), events.begin(), events.end());
+}
+
+std::optional<PictureStore> makePictures(const PoseGraphConfiguration& loops) {
+  if (!loops.saves_images) return std::nullopt;
+  return PictureStore(static_cast<std::size_t>(loops.options.thinning.max_keyframes));
 }
 
 std::unique_ptr<PoseGraph> makePoseGraph(const PipelineOptions& options) {
@@ -51,6 +57,7 @@ PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::st
   options.imu_topic = parameters.textOr("imu_topic", options.imu_topic);
   options.image_topics[0] = parameters.textOr("image_topic", options.image_topics[0]);
   options.loops = readPoseGraphConfiguration(parameters);
+  if (options.loops.is_on && options.loops.loads_map) options.map = options.loops.map_file;
   knowKeysOfOthers(parameters);
   if (warnings != nullptr) *warnings = parameters.warnings();
   return options;
@@ -62,7 +69,18 @@ Pipeline::Pipeline(const PipelineOptions& options)
       pose_graph_(makePoseGraph(options)),
       refines_loops_(options.loops.refines_in_window),
       recent_images_(kRecentImages),
-      offset_(toNanoseconds(options.estimator.td)) {}
+      pictures_(makePictures(options.loops)),
+      offset_(toNanoseconds(options.estimator.td)) {
+  if (options.map.empty()) return;
+  if (!pose_graph_) throw InputError(options.map + ": a map needs loop closing, which is off");
+  loaded_map_ = pose_graph_->load(options.map, pictures_ ? &*pictures_ : nullptr);
+}
+
+std::size_t Pipeline::saveMap(const std::string& path) {
+  if (!pose_graph_) throw InputError(path + ": a map needs loop closing, which is off");
+  pose_graph_->waitUntilIdle();
+  return pose_graph_->save(path, pictures_ ? &*pictures_ : nullptr);
+}
 
 void Pipeline::addImu(const ImuSample& sample) {
   // A recording that has been started again: samples of its first run would block the way.
@@ -155,8 +173,9 @@ void Pipeline::closeLoops(const EstimatorResult& estimate, PipelineResult* resul
 }
 
 void Pipeline::addKeyframe(const Keyframe& keyframe, PipelineResult* result) {
-  const PoseGraphResult added =
-      pose_graph_->addKeyframe(keyframe, recent_images_.find(keyframe.stamp));
+  const cv::Mat image = recent_images_.find(keyframe.stamp);
+  const PoseGraphResult added = pose_graph_->addKeyframe(keyframe, image);
+  if (pictures_ && added.is_kept && !image.empty()) pictures_->add(keyframe.id, image);
   append(&result->events, added.events);
   if (added.match && refines_loops_) estimator_.addLoopMatch(*added.match);
   addPart("pose_graph/describe", added.search.describe_seconds, result);

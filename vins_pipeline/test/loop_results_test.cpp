@@ -81,6 +81,10 @@ TEST_F(LoopResultsTest, KeyframesAreWrittenInTheFormOfVinsMono) {
   EXPECT_EQ(LoopResults::vinsMonoCsv(paths_),
             "2000000000,1.500000000,-2.000000000,0.250000000,1.000000000,0.000000000,0.000000000,"
             "0.000000000,\n");
+  // Keyframes of a loaded map are none of this run.
+  const std::string own = LoopResults::vinsMonoCsv(paths_);
+  paths_.insert(paths_.begin(), {-1, true, {keyframeAt(kSecond, 1, first_)}});
+  EXPECT_EQ(LoopResults::vinsMonoCsv(paths_), own);
 }
 
 }  // namespace

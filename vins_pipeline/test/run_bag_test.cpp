@@ -106,6 +106,8 @@ TEST_F(RunBag, ErrorsTellWhatIsWrongBeforeAnythingIsWritten) {
       {path("topic.yaml").string() + " " + bag, "has no topic '/imu'; it has /cam0/image_raw"},
       {config + " " + bag + " --start 9", "nothing from second 9 on"},
       {config + " " + bag + " --duration 0", "duration: found 0"},
+      {config + " " + bag + " --load-map /no/such.map", "/no/such.map: is no map file"},
+      {config + " " + bag + " --no-loop --save-map a.map", "--save-map: a map needs loop closing"},
       {config + " " + kConfig, "cannot be read as a bag"}};
   for (const auto& c : cases) {
     const Outcome outcome = run(c.arguments + " --out " + path("out").string());
@@ -126,6 +128,16 @@ TEST_F(RunBag, AFolderThatCannotBeMadeIsAnError) {
   const Outcome outcome = run(std::string(kConfig) + " " + bag + " --out " + bag);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(contains(outcome.output, "a.bag: cannot be made")) << outcome.output;
+}
+
+TEST_F(RunBag, AMapWithoutKeyframesIsNotWritten) {
+  const std::string bag = writeBag("short.bag");
+  const Outcome outcome = run(std::string(kConfig) + " " + bag + " --out " + path("out").string() +
+                              " --save-map " + path("a.map").string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "saved map     none: there was no keyframe"))
+      << outcome.output;
+  EXPECT_FALSE(fs::exists(path("a.map")));
 }
 
 TEST_F(RunBag, HelpNamesExitCodes) {

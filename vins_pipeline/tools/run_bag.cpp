@@ -15,6 +15,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/core.hpp>
 
+#include "run_maps.h"
 #include "support_files.h"
 #include "trajectory_report.h"
 #include "vins_core/folder.h"
@@ -45,7 +46,8 @@ struct Run {
   vins::LoopResults loop_results;
   std::vector<vins::SequencePath> paths;           ///< at the end
   std::optional<vins::PoseGraphStatistics> graph;  ///< at the end; nothing without loop closing
-  vins::Stamp reached = 0;                         ///< by arrival [ns]
+  vins::RunMaps maps;
+  vins::Stamp reached = 0;  ///< by arrival [ns]
   bool interrupted = false;
 };
 
@@ -59,7 +61,8 @@ vins::RecordingSelection selectionOf(const po::variables_map& values,
   return selection;
 }
 
-vins::PipelineOptions readConfig(const std::string& path, bool without_loops) {
+vins::PipelineOptions readConfig(const po::variables_map& values) {
+  const std::string path = values["config"].as<std::string>();
   std::vector<std::string> warnings;
   vins::PipelineOptions options = vins::readPipelineOptions(path, &warnings);
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
@@ -67,7 +70,12 @@ vins::PipelineOptions readConfig(const std::string& path, bool without_loops) {
   options.estimator.max_solver_time = 0.0;
   vins::PoseGraphConfiguration& loops = options.loops;
   loops.options.threaded = false;
-  if (without_loops) loops.is_on = false;
+  const std::string load = values["load-map"].as<std::string>();
+  if (!load.empty()) options.map = load;
+  if (values["no-loop"].as<bool>()) {
+    loops.is_on = false;
+    if (load.empty()) options.map.clear();
+  }
   if (loops.is_on) {
     const std::string shipped = loops.files.needsShipped() ? vins::findSupportFiles() : "";
     options.places = vins::readPlaceModel(loops.files, shipped);
@@ -122,13 +130,15 @@ void work(vins::Pipeline* pipeline, Run* run) {
   }
 }
 
-void closeGraph(vins::PoseGraph* graph, Run* run) {
+void closeGraph(vins::Pipeline* pipeline, Run* run) {
+  vins::PoseGraph* graph = pipeline->poseGraph();
   if (graph == nullptr) return;
   const vins::StopWatch watch;
   graph->finish();
   run->record.addDuration("pose_graph/finish", watch.elapsed());
   run->paths = graph->paths();
   run->graph = graph->statistics();
+  finishMaps(pipeline, &run->maps);
 }
 
 std::string noteOf(const Run& run) {
@@ -161,7 +171,7 @@ void process(vins::Interrupt* interrupt, Run* run) {
     pipeline.finish();
     work(&pipeline, run);
   }
-  closeGraph(pipeline.poseGraph(), run);
+  closeGraph(&pipeline, run);
   bar.finish(noteOf(*run));
 }
 
@@ -244,6 +254,7 @@ void printSummary(const Run& run, const fs::path& folder) {
             << (results.isTracking() ? "tracking" : "not tracking")
             << (run.interrupted ? " when interrupted\n" : " at the end\n");
   if (run.graph) printLoops(*run.graph);
+  std::cout << run.maps;
   printWarnings(results);
   std::cout << "speed         " << secondsDone(run) << " s in " << wall
             << " s: " << secondsDone(run) / std::max(wall, 1e-9) << "x real time, peak memory "
@@ -281,7 +292,14 @@ int runBag(const po::variables_map& values) {
   // One thread: the same bytes everywhere, and the CPU time of the work itself.
   cv::setNumThreads(1);
   Run run;
-  run.options = readConfig(values["config"].as<std::string>(), values["no-loop"].as<bool>());
+  run.options = readConfig(values);
+  if (!run.options.map.empty() && !fs::is_regular_file(run.options.map)) {
+    throw vins::InputError(run.options.map + ": is no map file");
+  }
+  run.maps.file_to_save = values["save-map"].as<std::string>();
+  if (!run.maps.file_to_save.empty() && !run.options.loops.is_on) {
+    throw vins::InputError("--save-map: a map needs loop closing, which is off");
+  }
   run.recording =
       vins::openRecording(values["bag"].as<std::string>(), selectionOf(values, run.options));
   run.reached = run.recording->summary().begin;
@@ -296,6 +314,7 @@ int runBag(const po::variables_map& values) {
   printSummary(run, folder);
   if (run.interrupted) return kInterrupted;
   report(values, folder, run);
+  if (!run.maps.error.empty()) throw vins::InputError(run.maps.error);
   return run.results.odometries() > 0 && run.results.isTracking() ? kDone : kNotTracking;
 }
 
@@ -315,6 +334,11 @@ po::options_description describeOptions() {
       "of the recording");
   add("align", po::value<std::string>()->default_value("posyaw"),
       "for the comparison: none, posyaw, se3, sim3");
+  add("load-map", po::value<std::string>()->default_value(""),
+      "a map to relocalise in; if not given, what the configuration says "
+      "(load_previous_pose_graph)");
+  add("save-map", po::value<std::string>()->default_value(""),
+      "where the map is saved in the end, the loaded one's part included");
   add("no-loop", po::bool_switch(), "odometry only, without loop closure");
   return options;
 }

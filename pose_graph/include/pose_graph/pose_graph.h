@@ -89,7 +89,7 @@ class PoseGraph {
   PoseGraphResult addKeyframe(const Keyframe& keyframe, const cv::Mat& image);
 
   /// The same with a view that has been made already, as ViewDescriber makes it.
-  PoseGraphResult addKeyframe(const Keyframe& keyframe, DescribedView described);
+  PoseGraphResult addDescribed(const Keyframe& keyframe, DescribedView described);
 
   /// The odometry's last word on a keyframe. False where it is not in the graph.
   bool update(const KeyframePoseUpdate& update);

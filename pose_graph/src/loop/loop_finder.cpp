@@ -35,13 +35,13 @@ LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, const cv::Mat& imag
   WallClock clock;
   DescribedView described = describer_.describe(keyframe, image);
   const double describe_seconds = clock.lap();
-  LoopSearch search = addKeyframe(keyframe, std::move(described), gate);
+  LoopSearch search = addDescribed(keyframe, std::move(described), gate);
   search.describe_seconds = describe_seconds;
   return search;
 }
 
-LoopSearch LoopFinder::addKeyframe(const Keyframe& keyframe, DescribedView described,
-                                   const Gate& gate) {
+LoopSearch LoopFinder::addDescribed(const Keyframe& keyframe, DescribedView described,
+                                    const Gate& gate) {
   LoopSearch search;
   WallClock clock;
   const std::vector<LoopCandidate> candidates =

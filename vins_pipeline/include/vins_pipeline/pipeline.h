@@ -37,6 +37,7 @@ struct PipelineOptions {
   std::vector<std::string> image_topics = {"/cam0/image_raw"};
   PoseGraphConfiguration loops;
   PlaceModel places;  ///< empty: no loop closing, whatever `loops` says
+  std::string map;    ///< a map file to relocalise in; "" for none
 };
 
 /// Reads a rig's configuration file: camera, tracker, estimator, topics. Throws InputError naming
@@ -60,7 +61,7 @@ struct PipelineResult {
 /// all (unless the pose graph's options want its optimization beside).
 class Pipeline {
  public:
-  /// Throws InputError for bad options.
+  /// Throws InputError for bad options, or a map that cannot be read.
   explicit Pipeline(const PipelineOptions& options);
 
   void addImu(const ImuSample& sample);
@@ -77,6 +78,13 @@ class Pipeline {
 
   /// The third stage; null without loop closing.
   PoseGraph* poseGraph() { return pose_graph_.get(); }
+
+  /// What `map` has brought; nothing without one.
+  const std::optional<LoadedMap>& loadedMap() const { return loaded_map_; }
+
+  /// Writes the map as it is, with small images where the configuration wants them; how many
+  /// keyframes it has. Throws InputError as PoseGraph::save() does, or without loop closing.
+  std::size_t saveMap(const std::string& path);
 
  private:
   struct WaitingImage {
@@ -96,6 +104,8 @@ class Pipeline {
   std::unique_ptr<PoseGraph> pose_graph_;
   bool refines_loops_;
   RecentImages recent_images_;
+  std::optional<PictureStore> pictures_;  ///< where save_image wants them
+  std::optional<LoadedMap> loaded_map_;
   Stamp offset_;                   ///< td [ns]
   std::deque<ImuSample> samples_;  ///< not yet handed to the tracker
   std::deque<WaitingImage> images_;

@@ -66,7 +66,7 @@ class LoopFinder {
   LoopSearch addKeyframe(const Keyframe& keyframe, const cv::Mat& image, const Gate& gate = {});
 
   /// The same with a view that has been made already, as ViewDescriber makes it.
-  LoopSearch addKeyframe(const Keyframe& keyframe, DescribedView described, const Gate& gate = {});
+  LoopSearch addDescribed(const Keyframe& keyframe, DescribedView described, const Gate& gate = {});
 
   /// Remembers a view of a stored map without asking. Its features' nodes and words are found
   /// anew, by this vocabulary. Throws InputError where the id is known.
