@@ -127,5 +127,49 @@ TEST_F(LoopClosing, TheSecondRoundIsRecognisedAndBringsThePathNearerToTheTruth) 
   EXPECT_FALSE(fs::exists(folder() / "alone/loop_live.txt"));
 }
 
+TEST_F(LoopClosing, ASecondRunFindsItselfInTheMapOfTheFirst) {
+  const std::string map = (folder() / "maps/hall.map").string();
+  ASSERT_EQ(runBag("mapped", "--duration 22 --save-map " + map), 0) << textOf(folder() / "log.txt");
+  ASSERT_TRUE(fs::exists(map));
+  // From another place of the same hall, in a process of its own.
+  const std::string both = (folder() / "both.map").string();
+  ASSERT_EQ(runBag("located", "--start 12 --load-map " + map + " --save-map " + both), 0)
+      << textOf(folder() / "log.txt");
+  EXPECT_NE(textOf(folder() / "log.txt").find("this run has joined it"), std::string::npos)
+      << textOf(folder() / "log.txt");
+  EXPECT_GT(fs::file_size(both), fs::file_size(map)) << "both runs are in it";
+  // Where it begins the map is known already: from its first odometry on five seconds are allowed.
+  const Trajectory located = readTrajectoryFile((folder() / "located/loop_final.txt").string());
+  const std::vector<ToldLoop> loops = loopsOf("located");
+  ASSERT_FALSE(loops.empty());
+  EXPECT_LE(toSeconds(loops.front().stamp - located.poses().front().stamp), 5.0);
+
+  // One path in the map's frame: the first run's, and what the second has flown after it.
+  std::string joined = textOf(folder() / "mapped/loop_final.txt");
+  const Stamp end =
+      readTrajectoryFile((folder() / "mapped/loop_final.txt").string()).poses().back().stamp;
+  for (const StampedPose& pose : located.poses()) {
+    if (pose.stamp > end) joined += toTumLine(pose) + "\n";
+  }
+  std::ofstream(folder() / "joined.txt") << joined;
+  fs::create_directories(folder() / "joined");
+  ASSERT_EQ(
+      run("vins_tests/evaluate_trajectory",
+          (folder() / "hall_groundtruth.txt").string() + " " + (folder() / "joined.txt").string() +
+              " --align posyaw --json " + (folder() / "joined/evaluation.json").string()),
+      0)
+      << textOf(folder() / "log.txt");
+  EXPECT_LT(errorOf("joined", "joined"), 0.1) << "[m]";
+}
+
+TEST_F(LoopClosing, MapsThatCannotBeReadAreTold) {
+  EXPECT_NE(runBag("no_map", "--load-map /no/such.map"), 0);
+  EXPECT_NE(textOf(folder() / "log.txt").find("/no/such.map: is no map file"), std::string::npos);
+  std::ofstream(folder() / "foreign.map") << "no map";
+  EXPECT_NE(runBag("no_map", "--load-map " + (folder() / "foreign.map").string()), 0);
+  EXPECT_NE(textOf(folder() / "log.txt").find("is no map of this program"), std::string::npos);
+  EXPECT_NE(runBag("no_map", "--no-loop --save-map " + (folder() / "a.map").string()), 0);
+}
+
 }  // namespace
 }  // namespace vins
