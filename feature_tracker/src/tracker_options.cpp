@@ -1,8 +1,8 @@
 #include "feature_tracker/tracker_options.h"
 
 #include <cmath>
-#include <filesystem>
 
+#include "vins_core/folder.h"
 #include "vins_core/option_check.h"
 
 namespace vins {
@@ -25,8 +25,7 @@ constexpr Range kSeed{0, 2147483647};
 std::string maskFile(const Parameters& parameters) {
   const std::string mask = parameters.textOr("fisheye_mask", "");
   if (!parameters.flagOr("fisheye", false) || mask.empty()) return "";
-  const std::filesystem::path folder = std::filesystem::path(parameters.name()).parent_path();
-  return (folder / mask).string();
+  return pathSeenFrom(parameters.name(), mask);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "vins_core/folder.h"
 #include "vins_core/option_check.h"
 
 namespace vins {
@@ -12,15 +13,12 @@ constexpr Range kAngle{0.0, 180.0};
 constexpr Range kCount{0, 1000};
 constexpr Range kKeyframes{200, 100000};
 constexpr Range kInliers{10, 1000};
-constexpr Range kDrift{0.0, 1e6};
+constexpr Range kDrift{0.0, 1000.0};
 constexpr Range kSigma{1e-4, 100.0};
 
-/// A file's path, seen from the configuration file's folder; "" where the key is absent.
+/// A file's path; "" where the key is absent.
 std::string fileOf(const Parameters& parameters, const char* key) {
-  const std::string file = parameters.textOr(key, "");
-  if (file.empty()) return "";
-  const std::filesystem::path folder = std::filesystem::path(parameters.name()).parent_path();
-  return (folder / file).string();
+  return pathSeenFrom(parameters.name(), parameters.textOr(key, ""));
 }
 
 }  // namespace

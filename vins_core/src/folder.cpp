@@ -1,5 +1,6 @@
 #include "vins_core/folder.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
@@ -21,6 +22,13 @@ void makeFolder(const std::string& path) {
 void makeFolderOf(const std::string& file) {
   const fs::path folder = fs::path(file).parent_path();
   if (!folder.empty()) makeFolder(folder.string());
+}
+
+std::string pathSeenFrom(const std::string& file, const std::string& path) {
+  if (path.empty()) return "";
+  const char* const home = std::getenv("HOME");
+  if (home != nullptr && path.rfind("~/", 0) == 0) return home + path.substr(1);
+  return (std::filesystem::path(file).parent_path() / path).string();
 }
 
 }  // namespace vins

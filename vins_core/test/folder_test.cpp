@@ -1,5 +1,6 @@
 #include "vins_core/folder.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -58,6 +59,17 @@ TEST_F(Folder, WhereAFileIsInTheWayIsAnError) {
 TEST_F(Folder, OfATextFileIsMadeWhenItIsWritten) {
   writeTextFile(path("new/text.txt"), "text\n");
   EXPECT_TRUE(fs::is_regular_file(path("new/text.txt")));
+}
+
+TEST(PathSeenFrom, TheFileThatNamesIt) {
+  EXPECT_EQ(pathSeenFrom("/rigs/euroc.yaml", "mask.png"), "/rigs/mask.png");
+  EXPECT_EQ(pathSeenFrom("rigs/euroc.yaml", "maps/hall"), "rigs/maps/hall");
+  EXPECT_EQ(pathSeenFrom("euroc.yaml", "maps"), "maps");
+  EXPECT_EQ(pathSeenFrom("/rigs/euroc.yaml", "/maps"), "/maps");
+  EXPECT_EQ(pathSeenFrom("/rigs/euroc.yaml", ""), "");
+  ASSERT_EQ(setenv("HOME", "/home/me", 1), 0);
+  EXPECT_EQ(pathSeenFrom("/rigs/euroc.yaml", "~/maps"), "/home/me/maps");
+  EXPECT_EQ(pathSeenFrom("/rigs/euroc.yaml", "~maps"), "/rigs/~maps");
 }
 
 }  // namespace

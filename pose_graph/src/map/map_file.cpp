@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "place/binary_file.h"
@@ -310,13 +309,7 @@ void MapWriter::addLoops(const std::vector<LoopEdge>& loops) {
   addSection(section);
 }
 
-void MapWriter::write(const std::string& path) const {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) throw InputError(path + ": its folder cannot be made: " + error.message());
-  writeTextFile(path, bytes_);
-}
+void MapWriter::write(const std::string& path) const { writeTextFile(path, bytes_); }
 
 StoredMap readMap(const std::string& path) { return MapReader(readBytes(path), path).read(); }
 

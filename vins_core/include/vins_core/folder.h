@@ -11,4 +11,8 @@ void makeFolder(const std::string& path);
 /// Makes the folder that a file shall lie in. Throws like makeFolder().
 void makeFolderOf(const std::string& file);
 
+/// A path as a file gives it: relative ones are seen from that file's folder, "~/" is the user's
+/// home. "" stays "".
+std::string pathSeenFrom(const std::string& file, const std::string& path);
+
 }  // namespace vins
