@@ -47,8 +47,8 @@ struct HeadingEdge {
 /// tell the same story `predecessors` times over; their variances are greater by that factor.
 struct KeyframeGraphOptions {
   int predecessors = 5;          ///< of the same sequence that a keyframe has an edge to
-  double position_drift = 0.02;  ///< of the odometry [m/sqrt(s)]
-  double yaw_drift = 0.002;      ///< of the odometry [rad/sqrt(s)]
+  double position_drift = 0.01;  ///< of the odometry [m/sqrt(s)]
+  double yaw_drift = 0.001;      ///< of the odometry [rad/sqrt(s)]
   /// Of a loop, beside its own covariance, which knows nothing of the calibration's errors: of a
   /// focal length to 0.3 %, seen over 5 m, and of distortion to a pixel at 460 px/rad.
   double loop_position_sigma = 0.015;  ///< [m]
