@@ -11,8 +11,15 @@ namespace {
 
 constexpr double kLongestCarry = 1.0;    // [s]: then accelerations can no longer be trusted
 constexpr double kUnknownSpeed = 1.0;    // [m/s], of a body that was lost
-constexpr double kUnknownTurn = 0.02;    // [rad/s], of a gyroscope that was silent or is in doubt
+constexpr double kUnknownTurn = 0.02;    // [rad/s], of a gyroscope that is in doubt
+constexpr double kUnseenTurn = 0.5;      // [rad/s], while it was silent
 constexpr double kLongestMemory = 10.0;  // [s]; first frames are younger
+
+/// Deviation of a turn about the vertical, by the covariance of a rotation's error in the body.
+double yawSigma(const Eigen::Quaterniond& R_wb, const Matrix15d& covariance) {
+  const Eigen::Vector3d up_b = R_wb.conjugate() * Eigen::Vector3d::UnitZ();
+  return std::sqrt(up_b.dot(covariance.block<3, 3>(kRotation, kRotation) * up_b));
+}
 
 NavState moved(const Eigen::Quaterniond& turn, const Eigen::Vector3d& shift,
                const NavState& state) {
@@ -26,11 +33,9 @@ NavState moved(const Eigen::Quaterniond& turn, const Eigen::Vector3d& shift,
 }  // namespace
 
 void Continuation::start(Stamp stamp, const NavState& state, const Matrix15d& covariance) {
-  const Eigen::Matrix3d R_wb = state.T_wb.rotation.toRotationMatrix();
   const Eigen::Vector3d position = covariance.diagonal().head<3>();
-  const Eigen::Matrix3d rotation_w =
-      R_wb * covariance.block<3, 3>(kRotation, kRotation) * R_wb.transpose();
-  entries_ = {{stamp, state, std::sqrt(position.maxCoeff()), std::sqrt(rotation_w(2, 2))}};
+  entries_ = {
+      {stamp, state, std::sqrt(position.maxCoeff()), yawSigma(state.T_wb.rotation, covariance)}};
   carried_ = 0.0;
 }
 
@@ -48,7 +53,8 @@ void Continuation::addFrame(const FrameMeasurements& measurements) {
     next.v_w.setZero();
   }
   entry.position_sigma += dt * kUnknownSpeed;
-  entry.yaw_sigma += dt * kUnknownTurn;
+  const double turn_rate = measurements.has_gap ? kUnseenTurn : kUnknownTurn;
+  entry.yaw_sigma += dt * turn_rate + yawSigma(next.T_wb.rotation, imu.covariance());
   entry.stamp = measurements.frame.stamp;
   entry.state = next;
   entries_.push_back(entry);
