@@ -73,6 +73,9 @@ PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters) 
       parameters.integerOr("min_loop_inliers", options.loops.verifier.min_inliers, kInliers);
   options.gate.position_share =
       parameters.numberOr("loop_max_drift", options.gate.position_share, kDrift);
+  options.graph.position_drift =
+      parameters.numberOr("position_drift", options.graph.position_drift, kSigma);
+  options.graph.yaw_drift = parameters.numberOr("yaw_drift", options.graph.yaw_drift, kSigma);
   options.validate();
   return result;
 }

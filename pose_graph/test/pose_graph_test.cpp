@@ -69,8 +69,6 @@ TEST_F(PoseGraphTest, TheMatchHasTheOldRollAndPitch) {
 TEST_F(PoseGraphTest, LoopsTakeTheDriftBack) {
   // All of it came in one step, which no odometry is expected to do: loops that are exact win.
   options_.graph = testing::exactLoops();
-  options_.graph.position_drift = 0.02;
-  options_.graph.yaw_drift = 0.002;
   options_.found_position_sigma = 0.005;
   options_.found_rotation_sigma = 0.05;
   const auto graph = this->graph();

@@ -91,6 +91,8 @@ inline KeyframeGraphOptions exactLoops() {
   KeyframeGraphOptions options;
   options.loop_position_sigma = 0.005;
   options.loop_yaw_sigma = 0.001;
+  options.position_drift = 0.02;
+  options.yaw_drift = 0.002;
   return options;
 }
 

@@ -57,9 +57,9 @@ struct PoseGraphConfiguration {
 
 /// Reads loop_closure, skip_dis, skip_cnt, load_previous_pose_graph, pose_graph_save_path,
 /// fast_relocalization, save_image, vocabulary_file, brief_pattern_file, max_keyframes,
-/// min_loop_inliers and loop_max_drift. All have defaults; files are seen from the configuration's
-/// folder. Throws InputError naming file, key, what was found and what is allowed. A map is loaded
-/// only from a folder that is given.
+/// min_loop_inliers, loop_max_drift, position_drift and yaw_drift. All have defaults; files are
+/// seen from the configuration's folder. Throws InputError naming file, key, what was found and
+/// what is allowed. A map is loaded only from a folder that is given.
 PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters);
 
 }  // namespace vins
