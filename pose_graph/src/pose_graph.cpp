@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "pose_graph/graph/loop_thinning.h"
 #include "pose_graph/loop/match_drawing.h"
 #include "vins_core/heading.h"
 #include "vins_core/wall_clock.h"
@@ -229,6 +230,9 @@ void PoseGraph::reportFailures(Stamp stamp, std::vector<Event>* events) {
 
 void PoseGraph::removeRedundant() {
   const std::vector<std::int64_t> ids = graph_.use([&](KeyframeGraph& graph) {
+    for (const LoopEdge& loop : redundantLoops(graph, options_.thinning)) {
+      graph.removeLoopEdge(loop.query_id, loop.old_id);
+    }
     const std::vector<std::int64_t> redundant = redundantKeyframes(graph, options_.thinning);
     for (const std::int64_t id : redundant) graph.removeKeyframe(id);
     return redundant;

@@ -98,6 +98,24 @@ TEST(KeyframeGraph, ComposedEdgesAreAsUncertainAsTheStepsTheyReplace) {
   EXPECT_NEAR(after[0].yaw_sigma, std::hypot(before[0].yaw_sigma, before[1].yaw_sigma), kRounding);
 }
 
+TEST(KeyframeGraph, PredecessorsLongAgoAreOneOnly) {
+  // Half a second apart, then with a gap that removed keyframes have left.
+  const SyntheticKeyframes keyframes(20, 20, 0.1, 3);
+  KeyframeGraph graph;
+  keyframes.addTo(&graph);
+  for (std::int64_t id = 6; id < 13; ++id) graph.removeKeyframe(id);
+  std::map<std::int64_t, std::vector<HeadingEdge>> edges;  // by the later end
+  for (const HeadingEdge& edge : graph.edges()) edges[edge.to].push_back(edge);
+  EXPECT_EQ(edges[5].size(), 5u);
+  ASSERT_EQ(edges[13].size(), 1u) << "the others are more than 3 s older";
+  EXPECT_EQ(edges[13][0].from, 5);
+  EXPECT_EQ(edges[14].size(), 1u);
+  EXPECT_EQ(edges[19].size(), 5u);
+  // The one edge says as much as many would: eight steps of half a second.
+  const double drift = KeyframeGraphOptions().position_drift;
+  EXPECT_NEAR(edges[13][0].position_sigma, drift * std::sqrt(8 * 0.5), kRounding);
+}
+
 TEST(KeyframeGraph, UpdatedOdometryRemakesEdgesAndCarriesTheMapPoseAlong) {
   KeyframeGraph graph;
   const SyntheticKeyframes keyframes(3, 20, 0.1, 4, kNoseUp);

@@ -80,7 +80,9 @@ TEST(PoseGraphOptions, ValidateLooksAtEveryPart) {
   isRefused([](auto* o) { o->loops.min_interval = -1.0; });
   isRefused([](auto* o) { o->loops.verifier.min_inliers = -1; });
   isRefused([](auto* o) { o->graph.predecessors = 0; });
+  isRefused([](auto* o) { o->graph.predecessor_seconds = -1.0; });
   isRefused([](auto* o) { o->thinning.max_keyframes = -1; });
+  isRefused([](auto* o) { o->thinning.loops_per_keyframe = 0.0; });
   isRefused([](auto* o) { o->skip_distance = -0.1; });
   isRefused([](auto* o) { o->skip_neighbours = 0; });
   isRefused([](auto* o) { o->found_position_sigma = 0.0; });

@@ -25,6 +25,7 @@ double durationBetween(const KeyframeVertex& a, const KeyframeVertex& b) {
 void KeyframeGraphOptions::validate() const {
   constexpr Range kSigma{1e-6, 1e3};
   requireWithin("keyframe graph", "predecessors", predecessors, {1, 100});
+  requireWithin("keyframe graph", "predecessor_seconds", predecessor_seconds, {0, 1e6});
   requireWithin("keyframe graph", "position_drift", position_drift, kSigma);
   requireWithin("keyframe graph", "yaw_drift", yaw_drift, kSigma);
   requireWithin("keyframe graph", "loop_position_sigma", loop_position_sigma, kSigma);
@@ -100,15 +101,20 @@ bool KeyframeGraph::updateOdometry(std::int64_t id, const Pose& T_wb) {
   return true;
 }
 
+std::vector<LoopEdge>::iterator KeyframeGraph::findLoop(std::int64_t query_id,
+                                                        std::int64_t old_id) {
+  return std::find_if(loops_.begin(), loops_.end(), [&](const LoopEdge& loop) {
+    return loop.query_id == query_id && loop.old_id == old_id;
+  });
+}
+
 LoopOutcome KeyframeGraph::addLoopEdge(const LoopEdge& edge) {
   const auto query = vertices_.find(edge.query_id), old = vertices_.find(edge.old_id);
   if (query == vertices_.end() || old == vertices_.end()) return LoopOutcome::kUnknownKeyframe;
   if (edge.query_id == edge.old_id || !isFinite(edge.T_old_query) || !edge.covariance.allFinite()) {
     return LoopOutcome::kUnusable;
   }
-  const auto known = std::find_if(loops_.begin(), loops_.end(), [&edge](const LoopEdge& loop) {
-    return loop.query_id == edge.query_id && loop.old_id == edge.old_id;
-  });
+  const auto known = findLoop(edge.query_id, edge.old_id);
   if (known != loops_.end()) {
     *known = edge;
     return LoopOutcome::kReplaced;
@@ -214,6 +220,13 @@ void KeyframeGraph::handOverLoops(const KeyframeVertex& from, std::optional<std:
   loops_.erase(std::remove_if(loops_.begin(), loops_.end(), useless), loops_.end());
 }
 
+bool KeyframeGraph::removeLoopEdge(std::int64_t query_id, std::int64_t old_id) {
+  const auto found = findLoop(query_id, old_id);
+  if (found == loops_.end()) return false;
+  loops_.erase(found);
+  return true;
+}
+
 bool KeyframeGraph::removeKeyframe(std::int64_t id) {
   const auto found = vertices_.find(id);
   if (found == vertices_.end()) return false;
@@ -272,11 +285,22 @@ std::vector<SequenceNumber> KeyframeGraph::sequences() const {
   return numbers;
 }
 
-HeadingEdge KeyframeGraph::sequentialEdge(const KeyframeVertex& from,
-                                          const KeyframeVertex& to) const {
-  // A step of the odometry is part of edges of every span from one to `predecessors`, and what the
-  // edges of one span say of it, those of the others repeat: each is given its share.
-  const double root = std::sqrt(options_.predecessors * durationBetween(from, to));
+std::size_t KeyframeGraph::predecessorsOf(const std::vector<std::int64_t>& ids,
+                                          std::size_t to) const {
+  const std::size_t most = std::min(to, static_cast<std::size_t>(options_.predecessors));
+  std::size_t count = std::min<std::size_t>(most, 1);
+  while (count < most && durationBetween(vertices_.at(ids[to - count - 1]),
+                                         vertices_.at(ids[to])) <= options_.predecessor_seconds) {
+    ++count;
+  }
+  return count;
+}
+
+HeadingEdge KeyframeGraph::sequentialEdge(const KeyframeVertex& from, const KeyframeVertex& to,
+                                          std::size_t repetitions) const {
+  // A step of the odometry is part of edges of every span, and what the edges of one span say of
+  // it, those of the others repeat: each is given its share.
+  const double root = std::sqrt(static_cast<double>(repetitions) * durationBetween(from, to));
   return {from.id,
           to.id,
           to.T_wb.position - from.T_wb.position,
@@ -304,12 +328,12 @@ HeadingEdge KeyframeGraph::loopEdge(const LoopEdge& loop) const {
 
 std::vector<HeadingEdge> KeyframeGraph::edges() const {
   std::vector<HeadingEdge> edges;
-  const auto reach = static_cast<std::size_t>(options_.predecessors);
   for (const auto& [number, sequence] : sequences_) {
     for (std::size_t to = 1; to < sequence.ids.size(); ++to) {
       const KeyframeVertex& vertex = vertices_.at(sequence.ids[to]);
-      for (std::size_t from = to - std::min(to, reach); from < to; ++from) {
-        edges.push_back(sequentialEdge(vertices_.at(sequence.ids[from]), vertex));
+      const std::size_t reach = predecessorsOf(sequence.ids, to);
+      for (std::size_t from = to - reach; from < to; ++from) {
+        edges.push_back(sequentialEdge(vertices_.at(sequence.ids[from]), vertex, reach));
       }
     }
   }

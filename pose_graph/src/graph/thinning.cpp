@@ -121,6 +121,7 @@ class Crowd {
 void ThinningOptions::validate() const {
   requireWithin("thinning", "max_keyframes", max_keyframes, {10, 1e6});
   requireWithin("thinning", "thin_to", thin_to, {0.1, 1});
+  requireWithin("thinning", "loops_per_keyframe", loops_per_keyframe, {0.01, 10});
   requireWithin("thinning", "newest", newest, {0, 1e6});
   requireWithin("thinning", "metres_per_radian", metres_per_radian, {0, 1e3});
 }

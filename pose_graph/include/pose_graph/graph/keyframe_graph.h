@@ -43,10 +43,13 @@ struct HeadingEdge {
 };
 
 /// Weights of the edges: odometry drifts as a random walk in time, so that a long step, left by a
-/// removed keyframe, is as uncertain as the steps that it replaces. The edges to the predecessors
-/// tell the same story `predecessors` times over; their variances are greater by that factor.
+/// removed keyframe, is as uncertain as the steps that it replaces. A keyframe's edges to its
+/// predecessors tell the same story many times over; their variances are greater by their number.
 struct KeyframeGraphOptions {
-  int predecessors = 5;          ///< of the same sequence that a keyframe has an edge to
+  int predecessors = 5;  ///< of the same sequence that a keyframe has an edge to
+  /// Farther back in time only the very last one is: where keyframes have left, edges to more would
+  /// repeat each other, and the time of an optimization grows with the square of their number.
+  double predecessor_seconds = 3.0;
   double position_drift = 0.01;  ///< of the odometry [m/sqrt(s)]
   double yaw_drift = 0.001;      ///< of the odometry [rad/sqrt(s)]
   /// Of a loop, beside its own covariance, which knows nothing of the calibration's errors: of a
@@ -108,6 +111,10 @@ class KeyframeGraph {
   /// that fulfils the loop; the older one stays.
   LoopOutcome addLoopEdge(const LoopEdge& edge);
 
+  /// Takes the loop between two keyframes out. Runs that it has joined stay joined. False: not
+  /// there.
+  bool removeLoopEdge(std::int64_t query_id, std::int64_t old_id);
+
   /// Takes a keyframe out. Its loops are handed to its nearest neighbour in the sequence, along the
   /// odometry, unless that has a loop with the same sequence already, which says the same: so loops
   /// do not pile up. Without neighbour they go too. False: not there.
@@ -154,6 +161,7 @@ class KeyframeGraph {
   };
 
   void insert(KeyframeVertex vertex);
+  std::vector<LoopEdge>::iterator findLoop(std::int64_t query_id, std::int64_t old_id);
   void joinComponents(SequenceNumber older, SequenceNumber younger);
   void moveComponent(SequenceNumber component, const Pose& T_new_old);
   void noteDrift(Sequence* sequence) const;
@@ -163,7 +171,9 @@ class KeyframeGraph {
                    const KeyframeVertex& from) const;
   void handOverLoops(const KeyframeVertex& from, std::optional<std::int64_t> to);
   void applyTo(Sequence* sequence, const GraphCorrection& correction);
-  HeadingEdge sequentialEdge(const KeyframeVertex& from, const KeyframeVertex& to) const;
+  std::size_t predecessorsOf(const std::vector<std::int64_t>& ids, std::size_t to) const;
+  HeadingEdge sequentialEdge(const KeyframeVertex& from, const KeyframeVertex& to,
+                             std::size_t repetitions) const;
   HeadingEdge loopEdge(const LoopEdge& loop) const;
 
   KeyframeGraphOptions options_;
