@@ -212,7 +212,7 @@ void PoseGraphRos::handle(Keyframe keyframe) {
   }
   const PoseGraphResult result = graph_->addKeyframe(keyframe, image);
   sequence_ = keyframe.sequence;
-  if (result.match && configuration_.refines_in_window) {
+  if (result.match && configuration_.options.refines_in_window) {
     LoopMatch match = *result.match;
     numbering_.giveBack(&match);
     publisher_.publish(match);

@@ -91,6 +91,7 @@ PoseGraphResult PoseGraph::addDescribed(const Keyframe& keyframe, DescribedView 
 
 bool PoseGraph::addToGraph(const Keyframe& keyframe, PoseGraphResult* result) {
   reportFailures(keyframe.stamp, &result->events);
+  result->optimize_seconds = optimizeIfWaiting();
   result->is_kept = isWorthKeeping(keyframe);
   if (!result->is_kept) {
     ++counts_.skipped;
@@ -163,7 +164,8 @@ void PoseGraph::addFound(const Keyframe& keyframe, const LoopVerification& loop,
   const LoopOutcome outcome =
       graph_.use([&](KeyframeGraph& graph) { return graph.addLoopEdge(edgeOf(*result->match)); });
   noteOutcome(outcome, keyframe.stamp, &result->events);
-  result->optimize_seconds = optimize();
+  waits_for_refinement_ = options_.refines_in_window;
+  if (!waits_for_refinement_) result->optimize_seconds += optimize();
 }
 
 LoopMatch PoseGraph::matchOf(const Keyframe& keyframe, const LoopVerification& loop) {
@@ -207,7 +209,10 @@ void PoseGraph::noteOutcome(LoopOutcome outcome, Stamp stamp, std::vector<Event>
                      {{"sequence", static_cast<double>(newest_sequence_.value_or(0))}}});
 }
 
+double PoseGraph::optimizeIfWaiting() { return waits_for_refinement_ ? optimize() : 0.0; }
+
 double PoseGraph::optimize() {
+  waits_for_refinement_ = false;
   if (options_.threaded) {
     optimizer_.request();
     return 0.0;

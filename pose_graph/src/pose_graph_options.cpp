@@ -52,7 +52,7 @@ PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters) 
   PoseGraphConfiguration result;
   PoseGraphOptions& options = result.options;
   result.is_on = parameters.flagOr("loop_closure", result.is_on);
-  result.refines_in_window = parameters.flagOr("fast_relocalization", result.refines_in_window);
+  options.refines_in_window = parameters.flagOr("fast_relocalization", true);
   result.files.vocabulary = fileOf(parameters, "vocabulary_file");
   result.files.pattern = fileOf(parameters, "brief_pattern_file");
   result.loads_map = parameters.flagOr("load_previous_pose_graph", result.loads_map);

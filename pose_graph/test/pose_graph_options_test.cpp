@@ -26,7 +26,7 @@ std::string errorOf(const std::string& text) {
 TEST(PoseGraphOptions, AnEmptyConfigurationGivesTheDefaults) {
   const PoseGraphConfiguration config = read("a: 1\n");
   EXPECT_TRUE(config.is_on);
-  EXPECT_TRUE(config.refines_in_window);
+  EXPECT_TRUE(config.options.refines_in_window);
   EXPECT_FALSE(config.loads_map);
   EXPECT_EQ(config.files.vocabulary, "");
   EXPECT_EQ(config.options.thinning.max_keyframes, 2000);
@@ -41,7 +41,7 @@ TEST(PoseGraphOptions, ReadsTheKeysOfVinsMonoAndItsOwn) {
       "vocabulary_file: words.voc\nbrief_pattern_file: \"/share/pattern.yml\"\n"
       "max_keyframes: 500\nmin_loop_inliers: 30\n");
   EXPECT_FALSE(config.is_on);
-  EXPECT_FALSE(config.refines_in_window);
+  EXPECT_FALSE(config.options.refines_in_window);
   EXPECT_EQ(config.options.skip_distance, 0.0);
   EXPECT_EQ(config.options.skip_count, 2);
   EXPECT_TRUE(config.loads_map);

@@ -106,6 +106,29 @@ TEST_F(PoseGraphTest, TheRefinedEdgeReplacesTheFirst) {
   EXPECT_EQ(graph->statistics().optimizations, runs) << "nothing new to optimize";
 }
 
+TEST_F(PoseGraphTest, AnOptimizationWaitsForTheRefinedEdge) {
+  options_.refines_in_window = true;
+  const auto graph = this->graph();
+  for (int place = 0; place < 12; ++place) visit(graph.get(), place);
+  int place = 0;
+  std::optional<LoopMatch> match;
+  while (!match && place < 5) match = visit(graph.get(), place++, kDrift).match;
+  ASSERT_TRUE(match);
+  EXPECT_EQ(graph->statistics().optimizations, 0u) << "the estimator will tell more";
+  LoopEdge edge;
+  edge.query_id = match->query_id;
+  edge.old_id = match->old_id;
+  edge.T_old_query = match->T_old_query;
+  EXPECT_EQ(graph->addLoopEdge(edge).outcome, LoopOutcome::kReplaced);
+  EXPECT_EQ(graph->statistics().optimizations, 1u);
+  match.reset();
+  while (!match && place < 10) match = visit(graph.get(), place++, kDrift).match;
+  ASSERT_TRUE(match);
+  EXPECT_EQ(graph->statistics().optimizations, 1u);
+  visit(graph.get(), place, kDrift);
+  EXPECT_EQ(graph->statistics().optimizations, 2u) << "no longer than to the next keyframe";
+}
+
 TEST_F(PoseGraphTest, ALoopJoinsANewSequence) {
   const auto graph = this->graph();
   for (int place = 0; place < 12; ++place) visit(graph.get(), place);

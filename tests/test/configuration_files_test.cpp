@@ -98,7 +98,7 @@ TEST_F(ConfigurationFiles, VinsMonosOwnFormRunsUnchanged) {
   // A deviation of one sample at 200 Hz, as VINS-Mono means it, not a density.
   EXPECT_NEAR(options.estimator.imu.accelerometer_noise, 0.08 / std::sqrt(200.0), 1e-9);
   EXPECT_TRUE(options.loops.is_on);
-  EXPECT_FALSE(options.loops.refines_in_window);
+  EXPECT_FALSE(options.loops.options.refines_in_window);
   EXPECT_TRUE(options.loops.saves_images);
 }
 

@@ -109,7 +109,7 @@ class ParametersPage : public ::testing::Test {
     const PoseGraphConfiguration& loops = options.loops;
     std::ostringstream out;
     out << options.cameras[0]->name() << options.tracker << options.estimator << loops.options
-        << loops.is_on << loops.refines_in_window << loops.loads_map << loops.saves_images
+        << loops.is_on << loops.options.refines_in_window << loops.loads_map << loops.saves_images
         << loops.files.vocabulary << loops.files.pattern << options.estimator.imu.vibration_share;
     return out.str();
   }

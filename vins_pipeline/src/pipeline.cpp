@@ -67,7 +67,7 @@ Pipeline::Pipeline(const PipelineOptions& options)
     : tracker_(options.cameras, {options.estimator.T_bc}, options.tracker, options.mask),
       estimator_(options.estimator),
       pose_graph_(makePoseGraph(options)),
-      refines_loops_(options.loops.refines_in_window),
+      refines_loops_(options.loops.options.refines_in_window),
       recent_images_(kRecentImages),
       pictures_(makePictures(options.loops)),
       offset_(toNanoseconds(options.estimator.td)) {

@@ -146,6 +146,7 @@ class PoseGraph {
   LoopEdge edgeOf(const LoopMatch& match) const;
   void noteOutcome(LoopOutcome outcome, Stamp stamp, std::vector<Event>* events);
   double optimize();
+  double optimizeIfWaiting();
   void reportFailures(Stamp stamp, std::vector<Event>* events);
   void removeRedundant();
 
@@ -155,6 +156,7 @@ class PoseGraph {
   PoseGraphStatistics counts_;
   std::optional<SequenceNumber> newest_sequence_;
   int left_to_skip_ = 0;
+  bool waits_for_refinement_ = false;     ///< a found loop is in the graph and not optimized yet
   std::optional<Stamp> last_gate_event_;  ///< [ns]
   std::atomic<std::size_t> runs_{0};
   std::atomic<std::size_t> failures_{0};

@@ -35,6 +35,11 @@ struct PoseGraphOptions {
   double found_position_sigma = 0.05;  ///< [m]
   double found_rotation_sigma = 0.5;   ///< [deg]
 
+  /// A loop that is found goes to the estimator and comes back refined, as a rule at once: the
+  /// optimization waits for that, until the next keyframe at most. fast_relocalization in a
+  /// configuration file, where it is on by default.
+  bool refines_in_window = false;
+
   /// Optimizes on a thread of its own; false: in the caller, so that every run is the same.
   bool threaded = true;
 
@@ -46,11 +51,10 @@ std::ostream& operator<<(std::ostream& out, const PoseGraphOptions& options);
 
 /// What a configuration file says of loop closing, in VINS-Mono's names where it has them.
 struct PoseGraphConfiguration {
-  bool is_on = true;              ///< loop_closure
-  bool refines_in_window = true;  ///< fast_relocalization: loops go to the estimator
-  PlaceModelFiles files;          ///< vocabulary_file, brief_pattern_file
-  bool loads_map = false;         ///< load_previous_pose_graph: map_file is loaded
-  std::string map_file;  ///< pose_graph.map in pose_graph_save_path; "" where that is not given
+  bool is_on = true;       ///< loop_closure
+  PlaceModelFiles files;   ///< vocabulary_file, brief_pattern_file
+  bool loads_map = false;  ///< load_previous_pose_graph: map_file is loaded
+  std::string map_file;    ///< pose_graph.map in pose_graph_save_path; "" where that is not given
   bool saves_images = false;  ///< save_image: keyframes' images are kept in the map
   PoseGraphOptions options;
 };
