@@ -1,5 +1,5 @@
 // What an hour of keyframes costs: memory, index, query, optimization and map file over time, of a
-// walk round and round a simulated town.
+// walk round and round a simulated town, or of standing still in it.
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "camera_model/testing/example_cameras.h"
 #include "pose_graph/pose_graph.h"
 #include "town_walk.h"
-#include "vins_core/input_error.h"
+#include "vins_core/option_check.h"
 #include "vins_core/progress_bar.h"
 #include "vins_core/resident_memory.h"
 #include "vins_core/text_file.h"
@@ -115,6 +115,8 @@ po::options_description describeOptions() {
   add("map", po::value<std::string>()->required(), "where the map is saved, again and again");
   add("seconds", po::value<double>()->default_value(3600.0), "of the walk");
   add("row", po::value<double>()->default_value(60.0), "seconds of the walk in a row of the table");
+  add("speed", po::value<double>()->default_value(1.39), "of the walk [m/s]; 0: stands still");
+  add("sway", po::value<double>()->default_value(0.6), "to both sides [m]");
   add("lap", po::value<double>()->default_value(1000.0), "length of the round road [m]");
   add("loop-interval", po::value<double>()->default_value(2.0),
       "after a loop nothing is verified for so long [s]: each loop is optimized at once");
@@ -129,16 +131,16 @@ Study readStudy(const po::variables_map& values) {
   study.csv = values["csv"].as<std::string>();
   study.map_file = values["map"].as<std::string>();
   study.walk.lap = values["lap"].as<double>();
+  study.walk.speed = values["speed"].as<double>();
+  study.walk.sway = values["sway"].as<double>();
   study.options.threaded = false;
   study.options.loops.min_interval = values["loop-interval"].as<double>();
   study.options.thinning.max_keyframes = values["max-keyframes"].as<int>();
-  const bool is_good = study.row >= study.walk.period && study.seconds >= study.row &&
-                       study.seconds <= 1e5 && study.walk.lap >= 50.0 && study.walk.lap <= 1e4;
-  if (!is_good) {
-    throw vins::InputError(
-        "--seconds, --row, --lap: allowed: seconds from row to 1e5, row from 0.5, lap from 50 to "
-        "1e4");
-  }
+  vins::requireWithin("map_growth", "row", study.row, {study.walk.period, 1e5});
+  vins::requireWithin("map_growth", "seconds", study.seconds, {study.row, 1e5});
+  vins::requireWithin("map_growth", "lap", study.walk.lap, {50.0, 1e4});
+  vins::requireWithin("map_growth", "speed", study.walk.speed, {0.0, 100.0});
+  vins::requireWithin("map_growth", "sway", study.walk.sway, {0.0, 10.0});
   return study;
 }
 

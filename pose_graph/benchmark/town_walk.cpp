@@ -121,9 +121,10 @@ void TownWalk::drift() {
 TownKeyframe TownWalk::next() {
   const double time = options_.period * static_cast<double>(next_id_);
   const double distance = options_.speed * time;
-  const Pose sway(yawRotation(0.05 * std::sin(0.11 * time)) *
-                      so3::exp({0.02 * std::sin(time), 0.02 * std::cos(0.7 * time), 0.0}),
-                  {0.0, 0.6 * std::sin(0.013 * time), 0.1 * std::sin(0.9 * time)});
+  const Pose sway(
+      yawRotation(0.05 * std::sin(0.11 * time)) *
+          so3::exp({0.02 * std::sin(time), 0.02 * std::cos(0.7 * time), 0.0}),
+      {0.0, options_.sway * std::sin(0.013 * time), options_.sway / 6.0 * std::sin(0.9 * time)});
   if (next_id_ > 0) drift();
   TownKeyframe result;
   result.truth = truthAt(distance) * sway;

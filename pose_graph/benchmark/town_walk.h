@@ -14,6 +14,7 @@ namespace vins::simulation {
 struct TownWalkOptions {
   double lap = 1000.0;            ///< length of the round road [m]
   double speed = 1.39;            ///< 5 km an hour [m/s]
+  double sway = 0.6;              ///< to both sides, and a sixth of it up and down [m]
   double period = 0.5;            ///< between keyframes [s]
   double landmarks = 50.0;        ///< on either side of the road together [1/m]
   std::size_t points = 120;       ///< features of a view that have a depth

@@ -44,6 +44,9 @@ Event gateEvent(Stamp stamp, const LoopVerification& loop, const OdometryCompari
        {"off_by_deg", comparison.yaw_error / kDegree}}};
 }
 
+/// Times the distance and the angle of a single neighbour.
+constexpr double kCrowdReach = 3.0;
+
 bool isNear(const Pose& a, const Pose& b, double distance, double angle) {
   return (a.position - b.position).norm() < distance &&
          a.rotation.angularDistance(b.rotation) < angle;
@@ -111,15 +114,22 @@ bool PoseGraph::isWorthKeeping(const Keyframe& keyframe) {
     --left_to_skip_;
     return false;
   }
-  return graph_.use([&](const KeyframeGraph& graph) {
-    const std::vector<std::int64_t>& ids = graph.keyframesOf(keyframe.sequence);
-    const auto reach = static_cast<std::size_t>(options_.skip_neighbours);
-    return std::none_of(ids.end() - static_cast<std::ptrdiff_t>(std::min(reach, ids.size())),
-                        ids.end(), [&](std::int64_t id) {
-                          return isNear(graph.vertices().at(id).T_wb, keyframe.T_wb,
-                                        options_.skip_distance, options_.skip_angle * kDegree);
-                        });
-  });
+  return graph_.use([&](const KeyframeGraph& graph) { return showsSomethingNew(keyframe, graph); });
+}
+
+bool PoseGraph::showsSomethingNew(const Keyframe& keyframe, const KeyframeGraph& graph) const {
+  // In the map: an odometry that drifts while the body stands still shows nothing new.
+  const Pose T_mb = graph.drift(keyframe.sequence).value_or(Pose()) * keyframe.T_wb;
+  const std::vector<std::int64_t>& ids = graph.keyframesOf(keyframe.sequence);
+  const auto reach = static_cast<std::size_t>(options_.skip_neighbours);
+  const double distance = options_.skip_distance, angle = options_.skip_angle * kDegree;
+  int around = 0;
+  for (std::size_t i = ids.size() - std::min(reach, ids.size()); i < ids.size(); ++i) {
+    const Pose& other = graph.vertices().at(ids[i]).T_mb;
+    if (isNear(other, T_mb, distance, angle)) return false;
+    around += isNear(other, T_mb, kCrowdReach * distance, kCrowdReach * angle) ? 1 : 0;
+  }
+  return around < options_.skip_crowd;
 }
 
 LoopFinder::Gate PoseGraph::gateFor(Stamp stamp, std::vector<Event>* events) {

@@ -32,6 +32,7 @@ void PoseGraphOptions::validate() const {
   const char* const owner = "pose graph";
   requireWithin(owner, "skip_dis", skip_distance, kDistance);
   requireWithin(owner, "skip_angle", skip_angle, kAngle);
+  requireWithin(owner, "skip_crowd", skip_crowd, {1, 1000});
   requireWithin(owner, "skip_neighbours", skip_neighbours, {1, 1000});
   requireWithin(owner, "skip_cnt", skip_count, kCount);
   requireWithin(owner, "found_position_sigma", found_position_sigma, kSigma);

@@ -84,6 +84,7 @@ TEST(PoseGraphOptions, ValidateLooksAtEveryPart) {
   isRefused([](auto* o) { o->thinning.max_keyframes = -1; });
   isRefused([](auto* o) { o->thinning.loops_per_keyframe = 0.0; });
   isRefused([](auto* o) { o->skip_distance = -0.1; });
+  isRefused([](auto* o) { o->skip_crowd = 0; });
   isRefused([](auto* o) { o->skip_neighbours = 0; });
   isRefused([](auto* o) { o->found_position_sigma = 0.0; });
   isRefused([](auto* o) { o->found_rotation_sigma = 0.0; });

@@ -135,6 +135,7 @@ class PoseGraph {
 
  private:
   bool isWorthKeeping(const Keyframe& keyframe);
+  bool showsSomethingNew(const Keyframe& keyframe, const KeyframeGraph& graph) const;
   bool addToGraph(const Keyframe& keyframe, PoseGraphResult* result);
   void take(const Keyframe& keyframe, LoopSearch search, PoseGraphResult* result);
   LoopFinder::Gate gateFor(Stamp stamp, std::vector<Event>* events);

@@ -21,12 +21,13 @@ struct PoseGraphOptions {
   FourDofOptions optimizer;
   ThinningOptions thinning;
 
-  /// A keyframe nearer than this to one of the last ones, and turned less than `skip_angle` from
-  /// it, is left out (skip_dis): 0 keeps all [m].
+  /// A keyframe nearer than this to one of the last ones in the map, and turned less than
+  /// `skip_angle` from it, is left out (skip_dis): 0 keeps all [m].
   double skip_distance = 0.05;
-  double skip_angle = 3.0;   ///< [deg]
-  int skip_neighbours = 20;  ///< keyframes that are compared with, so that swaying adds nothing
-  int skip_count = 0;        ///< keyframes left out after each one that is taken (skip_cnt)
+  double skip_angle = 3.0;    ///< [deg]
+  int skip_crowd = 12;        ///< nor is one left in among so many within three times of both
+  int skip_neighbours = 100;  ///< the last keyframes, which are compared with
+  int skip_count = 0;         ///< keyframes left out after each one that is taken (skip_cnt)
 
   /// Of a loop as the verification has measured it, until the estimator has refined it. The
   /// matches' own noise is small: 25 of them, off by 2 px, give 0.05 degrees and, 5 m away, 4 mm.
