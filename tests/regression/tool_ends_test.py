@@ -53,9 +53,9 @@ class ToolEndsTest(ProcessCase):
         self.assertTrue(tool.wait_for_word("20 %", 60.0), tool.output())
         self._assert_interrupted(tool)
         written = paths_below(self._path("a/new/folder"))
-        self.assertEqual(written, ["events.csv", "loop_final.txt", "loop_live.txt", "timing.json",
-                                   "vins_result_loop.csv", "vins_result_no_loop.csv",
-                                   "vio_live.txt"])
+        self.assertEqual(written, ["estimator.csv", "events.csv", "loop_final.txt", "loop_live.txt",
+                                   "timing.json", "tracker.csv", "vins_result_loop.csv",
+                                   "vins_result_no_loop.csv", "vio_live.txt"])
         with open(self._path("a/new/folder/timing.json"), encoding="utf-8") as file:
             self.assertGreater(json.load(file)["data_seconds"], 6.0)
         with open(self._path("a/new/folder/vio_live.txt"), encoding="utf-8") as file:

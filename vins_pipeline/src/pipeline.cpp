@@ -106,6 +106,7 @@ std::optional<PipelineResult> Pipeline::process() {
   images_.pop_front();
   PipelineResult result;
   result.stamp = image.stamp;
+  result.image = image.image;
   track(image, &result);
   estimate(&result);
   return result;
@@ -123,14 +124,14 @@ std::vector<ImuSample> Pipeline::samplesUpTo(Stamp stamp) {
 
 void Pipeline::track(const WaitingImage& image, PipelineResult* result) {
   const StopWatch watch;
-  const FeatureTrackerResult tracked =
+  FeatureTrackerResult tracked =
       tracker_.track({image.image}, image.stamp, samplesUpTo(image.stamp));
   result->durations.emplace_back("tracker", watch.elapsed());
   result->tracker = tracked.statistics;
   append(&result->events, tracked.events);
   if (!tracked.frame) return;
-  result->features = static_cast<int>(tracked.frame->observations.size());
   estimator_.addFrame(*tracked.frame);
+  result->frame = std::move(tracked.frame);
   if (pose_graph_) recent_images_.add(image.stamp, image.image);
 }
 

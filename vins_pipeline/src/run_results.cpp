@@ -31,7 +31,7 @@ std::string positionLine(const StampedPose& pose) {
 void RunResults::add(const PipelineResult& result) {
   if (!first_image_) first_image_ = result.stamp;
   ++images_;
-  features_ = result.features;
+  features_ = result.frame ? result.frame->observations.size() : 0;
   for (const EstimatorResult& estimate : result.estimates) add(estimate);
   for (const Event& event : result.events) {
     if (event.severity != Severity::kInfo) ++warnings_[event.code];

@@ -1,5 +1,6 @@
 // The program, run as a user runs it.
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <sys/wait.h>
 
 #include "vins_core/parameters.h"
@@ -86,6 +88,23 @@ TEST_F(RunBag, ARecordingTooShortToStartIsToldByTheExitCodeAndWrittenAllTheSame)
   EXPECT_NEAR(timing.number("data_seconds"), 0.25, 1e-6);
 }
 
+TEST_F(RunBag, DrawsTheTracksOfOneImage) {
+  const std::string bag = writeBag("short.bag");
+  const std::string arguments = std::string(kConfig) + " " + bag + " --out " + path("out").string();
+  const Outcome outcome = run(arguments + " --draw-tracks 0.12");
+  EXPECT_TRUE(contains(outcome.output, "estimator.csv, tracks.png")) << outcome.output;
+  const cv::Mat picture = cv::imread(path("out/tracks.png").string(), cv::IMREAD_UNCHANGED);
+  EXPECT_EQ(picture.size(), cv::Size(752, 480));
+  EXPECT_EQ(picture.type(), CV_8UC3);
+  // A line for each image and one for the names.
+  const std::string tracks = textOf(path("out/tracker.csv"));
+  EXPECT_EQ(std::count(tracks.begin(), tracks.end(), '\n'), 7);
+  // Nothing is drawn of a time after the end.
+  fs::remove(path("out/tracks.png"));
+  EXPECT_FALSE(contains(run(arguments + " --draw-tracks 1").output, "tracks.png"));
+  EXPECT_FALSE(fs::exists(path("out/tracks.png")));
+}
+
 TEST_F(RunBag, ErrorsTellWhatIsWrongBeforeAnythingIsWritten) {
   const std::string bag = writeBag("a.bag");
   const std::string small = writeBag("small.bag", {320, 240});
@@ -154,7 +173,9 @@ TEST_F(RunBag, TwoRunsGiveTheSameBytes) {
   const Outcome second = run(arguments + path("second").string());
   EXPECT_EQ(first.exit_code, second.exit_code) << first.output;
   EXPECT_EQ(textOf(path("first/vio_live.txt")), textOf(path("second/vio_live.txt")));
-  EXPECT_EQ(textOf(path("first/events.csv")), textOf(path("second/events.csv")));
+  for (const char* name : {"events.csv", "tracker.csv", "estimator.csv"}) {
+    EXPECT_EQ(textOf(path("first") / name), textOf(path("second") / name)) << name;
+  }
 }
 
 TEST_F(RunBag, AnInterruptedRunWritesWhatItHas) {

@@ -14,7 +14,7 @@ constexpr Stamp kStart = 1600000000000000000;
 PipelineResult resultAt(int i, bool is_tracking, std::uint32_t sequence = 0) {
   PipelineResult result;
   result.stamp = kStart + i * 50'000'000;
-  result.features = 100 + i;
+  result.frame.emplace().observations.resize(100 + i);
   EstimatorResult estimate;
   estimate.stamp = result.stamp;
   if (is_tracking) {

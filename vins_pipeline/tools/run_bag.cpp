@@ -2,7 +2,6 @@
 // and figures out.
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -17,6 +16,7 @@
 
 #include "run_maps.h"
 #include "support_files.h"
+#include "track_picture.h"
 #include "trajectory_report.h"
 #include "vins_core/folder.h"
 #include "vins_core/input_error.h"
@@ -25,6 +25,7 @@
 #include "vins_core/text_file.h"
 #include "vins_core/trajectory_file.h"
 #include "vins_pipeline/bag_recording.h"
+#include "vins_pipeline/frame_record.h"
 #include "vins_pipeline/loop_results.h"
 #include "vins_pipeline/pipeline.h"
 #include "vins_pipeline/run_record.h"
@@ -43,6 +44,8 @@ struct Run {
   std::unique_ptr<vins::Recording> recording;
   vins::RunRecord record;
   vins::RunResults results;
+  vins::FrameRecord frames;
+  vins::TrackPicture picture;
   vins::LoopResults loop_results;
   std::vector<vins::SequencePath> paths;           ///< at the end
   std::optional<vins::PoseGraphStatistics> graph;  ///< at the end; nothing without loop closing
@@ -126,6 +129,8 @@ void work(vins::Pipeline* pipeline, Run* run) {
     addFrameDuration(*result, &run->record);
     run->record.addEvents(result->events);
     run->results.add(*result);
+    run->frames.add(*result);
+    run->picture.add(*result, *run->options.cameras.front());
     run->loop_results.add(*result);
   }
 }
@@ -216,6 +221,9 @@ void writeFiles(const fs::path& folder, const Run& run) {
   }
   write("timing.json", run.record.timingJson(secondsDone(run)));
   write("events.csv", run.record.eventsCsv());
+  write("tracker.csv", run.frames.trackerCsv());
+  write("estimator.csv", run.frames.estimatorCsv());
+  run.picture.write((folder / "tracks.png").string());
 }
 
 void printWarnings(const vins::RunResults& results) {
@@ -261,8 +269,8 @@ void printSummary(const Run& run, const fs::path& folder) {
             << vins::peakMemoryMb() << " MB\n"
             << "written to    " << folder.string() << ": vio_live.txt, vins_result_no_loop.csv, "
             << (run.graph ? "loop_live.txt, loop_final.txt, vins_result_loop.csv, " : "")
-            << "timing.json, events.csv\n\n"
-            << run.record.timingTable();
+            << "timing.json, events.csv, tracker.csv, estimator.csv"
+            << (run.picture.isDrawn() ? ", tracks.png\n\n" : "\n\n") << run.record.timingTable();
 }
 
 void report(const po::variables_map& values, const fs::path& folder, const Run& run) {
@@ -303,6 +311,10 @@ int runBag(const po::variables_map& values) {
   run.recording =
       vins::openRecording(values["bag"].as<std::string>(), selectionOf(values, run.options));
   run.reached = run.recording->summary().begin;
+  if (values.count("draw-tracks") > 0) {
+    const double after = values["draw-tracks"].as<double>();
+    run.picture = vins::TrackPicture(run.reached + vins::toNanoseconds(after));
+  }
   const fs::path folder = values["out"].as<std::string>();
   vins::makeFolder(folder.string());
   {
@@ -340,6 +352,8 @@ po::options_description describeOptions() {
   add("save-map", po::value<std::string>()->default_value(""),
       "where the map is saved in the end, the loaded one's part included");
   add("no-loop", po::bool_switch(), "odometry only, without loop closure");
+  add("draw-tracks", po::value<double>(),
+      "draw the image this long after the recording's start, with its tracks: tracks.png [s]");
   return options;
 }
 
@@ -354,8 +368,9 @@ void printHelp(const po::options_description& options) {
       << "\nWritten to the folder: vio_live.txt (TUM, each pose as it was known at its\n"
          "frame), loop_live.txt (corrected by the loops known then), loop_final.txt (by all\n"
          "loops), vins_result_no_loop.csv and vins_result_loop.csv (VINS-Mono's form),\n"
-         "timing.json, events.csv and, with ground truth, ground_truth.txt, report.html, "
-         "evaluation.json.\n"
+         "timing.json, events.csv, of each frame what the tracker and the estimator had\n"
+         "(tracker.csv, estimator.csv: tracks, landmarks, standard deviations) and, with\n"
+         "ground truth, ground_truth.txt, report.html, evaluation.json.\n"
          "Exit code: 0 initialised and tracking to the end, 1 bad input, 2 never initialised\n"
          "or lost at the end, 130 interrupted (what was done so far is written).\n";
 }

@@ -14,6 +14,9 @@ From the ground up; a module imports only modules further up in this list:
   relative_error     errors over distances
   evaluation         all of the above for several estimates
   figures            the figures that the reports show, and which one is best
-  text_table, json_report, plots, svg, html_report
+  style, svg         how plots look, and SVG that can stand in a page
+  text_table, json_report, plots, html_report
+  run_folder         what run_bag has written
+  run_figures, place_figures   the figures of docs/how_it_works
   command_line       arguments and exit codes
 """

@@ -3,7 +3,7 @@
 import html
 import os
 
-from vins_evaluation import figures, plots
+from vins_evaluation import figures, plots, style
 
 _ALIGNMENTS = {
     "none": "none: estimates as they are",
@@ -58,7 +58,7 @@ def _head(evaluation):
 
 
 def _legend(evaluation):
-    entries = ["<span>%sground truth</span>" % _swatch(plots.TRUTH_COLOUR)]
+    entries = ["<span>%sground truth</span>" % _swatch(style.TRUTH_COLOUR)]
     entries += ["<span>%s</span>" % _name(evaluation, index)
                 for index in range(len(evaluation.results))]
     return '<div class="legend">%s</div>' % "".join(entries)
@@ -69,7 +69,7 @@ def _swatch(colour):
 
 
 def _name(evaluation, index):
-    return _swatch(plots.colour(index)) + html.escape(evaluation.results[index].name)
+    return _swatch(style.colour(index)) + html.escape(evaluation.results[index].name)
 
 
 def _value(figure, index):

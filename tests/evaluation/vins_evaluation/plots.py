@@ -8,40 +8,12 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
+from vins_evaluation.style import STYLE, TRUTH_COLOUR, colour
 from vins_evaluation.svg import inline_svg
 from vins_evaluation.trajectory import NANOSECONDS
 
-# Okabe and Ito, "Color universal design", 2008, without black and yellow.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-TRUTH_COLOUR = "#555555"
-
 # More than a plot of this size can show.
 _MOST_POINTS = 4000
-
-_STYLE = {
-    "font.size": 9,
-    "axes.edgecolor": "#888888",
-    "axes.grid": True,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.axisbelow": True,
-    "grid.color": "#e4e4e4",
-    "grid.linewidth": 0.6,
-    "lines.linewidth": 1.1,
-    "lines.solid_joinstyle": "round",
-    "path.simplify": True,
-    "path.simplify_threshold": 0.15,
-    "svg.fonttype": "none",
-    # Without a salt the ids, and so the file, would differ from run to run.
-    "svg.hashsalt": "evaluate_trajectory",
-    "xtick.color": "#555555",
-    "ytick.color": "#555555",
-}
-
-
-def colour(index):
-    """The colour of estimate number index."""
-    return COLOURS[index % len(COLOURS)]
 
 
 def top_view(evaluation):
@@ -56,7 +28,7 @@ def side_view(evaluation):
 
 def position_error(evaluation):
     """Length of the position error over time."""
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = _figure(10.0, 2.6)
         axes = figure.add_subplot(1, 1, 1)
         for index, result in enumerate(evaluation.results):
@@ -72,7 +44,7 @@ def component_errors(evaluation):
     rows = [("x [m]", 0), ("y [m]", 1), ("z [m]", 2)]
     if any(result.absolute.yaw is not None for result in evaluation.results):
         rows.append(("yaw [deg]", None))
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = _figure(10.0, 1.3 * len(rows) + 0.4)
         first = None
         for number, (label, component) in enumerate(rows, 1):
@@ -88,7 +60,7 @@ def component_errors(evaluation):
 
 def relative_errors(evaluation):
     """Box plots of the relative errors over distances."""
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = _figure(10.0, 3.2)
         panels = (("translation_percent", "translation error [%]"),
                   ("rotation", "rotation error [deg]"))
@@ -106,7 +78,7 @@ def _figure(width, height):
 
 
 def _view(evaluation, name, axis_numbers, title):
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = _figure(5.0, 4.6)
         axes = figure.add_subplot(1, 1, 1)
         truth = evaluation.truth.positions[:, axis_numbers]

@@ -16,6 +16,7 @@
 #include "pose_graph/pose_graph.h"
 #include "pose_graph/pose_graph_options.h"
 #include "vins_core/event.h"
+#include "vins_core/feature_frame.h"
 #include "vins_core/imu.h"
 #include "vins_core/parameters.h"
 #include "vins_core/pose.h"
@@ -47,8 +48,9 @@ PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::st
 /// What came of one image.
 struct PipelineResult {
   Stamp stamp = 0;  ///< the image's [ns]
+  cv::Mat image;    ///< as it was added
   TrackerStatistics tracker;
-  int features = 0;                        ///< handed to the estimator
+  std::optional<FeatureFrame> frame;       ///< handed to the estimator; none where it was refused
   std::vector<EstimatorResult> estimates;  ///< of this frame, or of those before that had waited
   /// The odometries of `estimates` in the map, as known now; none without loop closing.
   std::vector<StampedPose> corrected;

@@ -64,7 +64,7 @@ class RunResults {
   std::size_t images_ = 0;
   std::size_t frames_ = 0;
   std::size_t odometries_ = 0;
-  int features_ = 0;
+  std::size_t features_ = 0;
   std::optional<Stamp> first_image_;
   std::optional<Stamp> first_odometry_;
   std::optional<Stamp> last_truth_;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "vins_estimator/estimator.h"
+#include "vins_pipeline/pipeline.h"
+
+namespace vins {
+
+/// What the tracker and the estimator had at each frame of a run, as tables: for figures, and for
+/// whoever needs the covariance. The same input gives the same bytes: no times of work are in it.
+class FrameRecord {
+ public:
+  FrameRecord();
+
+  void add(const PipelineResult& result);
+
+  /// tracker.csv, a line for each image: stamp [ns]; tracks of the image before, those of them that
+  /// were found again and that passed the outlier rejection, new ones, and the mean length of all
+  /// [images]. All are 0 where the image was refused.
+  const std::string& trackerCsv() const { return tracker_csv_; }
+
+  /// estimator.csv, a line for each odometry: stamp [ns], sequence, landmarks and rejected
+  /// observations of the window, 1 for a keyframe, and standard deviations: of the position in the
+  /// odometry's world [m], of yaw about its z and of tilt about its x and y together [deg], of the
+  /// velocity along its axes [m/s].
+  const std::string& estimatorCsv() const { return estimator_csv_; }
+
+ private:
+  void add(const Odometry& odometry, const EstimatorStatistics& statistics);
+
+  std::string tracker_csv_;
+  std::string estimator_csv_;
+};
+
+}  // namespace vins

@@ -1,0 +1,56 @@
+#include "vins_pipeline/frame_record.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <Eigen/Core>
+
+namespace vins {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// Standard deviations from variances; those that rounding made negative are zero.
+Eigen::Vector3d deviations(const Eigen::Matrix3d& covariance) {
+  return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+}  // namespace
+
+FrameRecord::FrameRecord()
+    : tracker_csv_("#stamp [ns],before,tracked,inliers,detected,mean_track_length\n"),
+      estimator_csv_(
+          "#stamp [ns],sequence,landmarks,outliers,keyframe,sigma_px [m],sigma_py [m],"
+          "sigma_pz [m],sigma_yaw [deg],sigma_tilt [deg],sigma_vx [m/s],sigma_vy [m/s],"
+          "sigma_vz [m/s]\n") {}
+
+void FrameRecord::add(const PipelineResult& result) {
+  const TrackerStatistics& tracker = result.tracker;
+  char line[160];
+  std::snprintf(line, sizeof(line), "%lld,%d,%d,%d,%d,%.3f\n", static_cast<long long>(result.stamp),
+                tracker.before, tracker.tracked, tracker.inliers, tracker.detected,
+                tracker.mean_track_length);
+  tracker_csv_ += line;
+  for (const EstimatorResult& estimate : result.estimates) {
+    if (estimate.odometry) add(*estimate.odometry, estimate.statistics);
+  }
+}
+
+void FrameRecord::add(const Odometry& odometry, const EstimatorStatistics& statistics) {
+  const Eigen::Matrix3d R_wb = odometry.state.T_wb.rotation.toRotationMatrix();
+  const Matrix15d& P = odometry.covariance;
+  const Eigen::Vector3d position = deviations(P.block<3, 3>(kPosition, kPosition));
+  // The rotation's error is one of the body's axes.
+  const Eigen::Vector3d turn =
+      deviations(R_wb * P.block<3, 3>(kRotation, kRotation) * R_wb.transpose()) / kDegree;
+  const Eigen::Vector3d velocity = deviations(P.block<3, 3>(kVelocity, kVelocity));
+  char line[320];
+  std::snprintf(line, sizeof(line), "%lld,%u,%d,%d,%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f\n",
+                static_cast<long long>(odometry.stamp), odometry.sequence, statistics.landmarks,
+                statistics.outliers, statistics.keyframe ? 1 : 0, position.x(), position.y(),
+                position.z(), turn.z(), turn.head<2>().norm(), velocity.x(), velocity.y(),
+                velocity.z());
+  estimator_csv_ += line;
+}
+
+}  // namespace vins
