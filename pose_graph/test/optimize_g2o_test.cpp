@@ -57,7 +57,7 @@ TEST_F(OptimizeG2o, AllMethodsAndStartsEndAtTheSameCost) {
   const double reference = finalCost(run(in_ + " " + out_).output);
   EXPECT_GT(reference, 0.0);
   for (const std::string method : {"gauss-newton", "levenberg-marquardt", "dogleg"}) {
-    for (const std::string start : {"file", "odometry", "spanning-tree", "chordal"}) {
+    for (const std::string start : {"best", "file", "odometry", "spanning-tree", "chordal"}) {
       const Outcome outcome = run(in_ + " " + out_ + " --method " + method + " --start " + start);
       EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
       EXPECT_NEAR(finalCost(outcome.output), reference, 1e-6 * reference) << method << " " << start;
@@ -66,6 +66,15 @@ TEST_F(OptimizeG2o, AllMethodsAndStartsEndAtTheSameCost) {
   // What was written is the optimum: from there the cost is the same at the start.
   const Outcome again = run(out_ + " " + out_ + " --iterations 1");
   EXPECT_NEAR(finalCost(again.output), reference, 1e-9 * reference) << again.output;
+}
+
+TEST_F(OptimizeG2o, StartsFromWhatCostsLess) {
+  const Outcome first = run(in_ + " " + out_);
+  EXPECT_NE(first.output.find("starting from the chordal start"), std::string::npos)
+      << "odometry has drifted: " << first.output;
+  const Outcome again = run(out_ + " " + out_);
+  EXPECT_NE(again.output.find("starting from the file's poses"), std::string::npos)
+      << "nothing beats the optimum: " << again.output;
 }
 
 TEST_F(OptimizeG2o, DrawsAPicture) {
@@ -79,7 +88,7 @@ TEST_F(OptimizeG2o, DrawsAPicture) {
 }
 
 TEST_F(OptimizeG2o, SaysThatItHasNotConverged) {
-  const Outcome outcome = run(in_ + " " + out_ + " --iterations 1");
+  const Outcome outcome = run(in_ + " " + out_ + " --start file --iterations 1");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.output.find("out of iterations"), std::string::npos) << outcome.output;
 }

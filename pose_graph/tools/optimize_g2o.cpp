@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <boost/program_options.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -36,9 +37,10 @@ T choose(const char* option, const std::map<std::string, T>& choices, const std:
                          "'; allowed: " + allowed);
 }
 
-enum class Start { kFile, kOdometry, kSpanningTree, kChordal };
+enum class Start { kBest, kFile, kOdometry, kSpanningTree, kChordal };
 
-const std::map<std::string, Start> kStarts = {{"file", Start::kFile},
+const std::map<std::string, Start> kStarts = {{"best", Start::kBest},
+                                              {"file", Start::kFile},
                                               {"odometry", Start::kOdometry},
                                               {"spanning-tree", Start::kSpanningTree},
                                               {"chordal", Start::kChordal}};
@@ -66,9 +68,9 @@ po::options_description describeOptions() {
   add("kernel-width", po::value<double>()->default_value(defaults.kernel.width),
       "whitened error from which on the kernel takes effect");
   add("iterations", po::value<int>()->default_value(defaults.minimizer.max_iterations), "at most");
-  add("start", po::value<std::string>()->default_value("file"),
-      "poses to start from: file, odometry (edges between neighbours), spanning-tree, or chordal "
-      "(a linear estimate of the rotations)");
+  add("start", po::value<std::string>()->default_value("best"),
+      "poses to start from: file, odometry (edges between neighbours), spanning-tree, chordal (a "
+      "linear estimate of the rotations), or best (file or chordal, whichever costs less)");
   add("picture", po::value<std::string>(),
       "image file for a drawing: the file's poses and the "
       "result");
@@ -92,8 +94,27 @@ vins::SixDofOptions readOptions(const po::variables_map& values) {
   return options;
 }
 
-void placeAtStart(Start start, vins::RelativePoseGraph* graph) {
+double costOf(vins::RelativePoseGraph graph, vins::SixDofOptions options) {
+  options.minimizer.max_iterations = 0;
+  options.minimizer.on_iteration = nullptr;
+  return vins::optimizeSixDof(&graph, options).initial_cost;
+}
+
+/// Poses far from any minimum, as files of odometry have them, may lead into a wrong valley.
+void placeAtBest(const vins::SixDofOptions& options, vins::RelativePoseGraph* graph) {
+  vins::RelativePoseGraph chordal = *graph;
+  if (!vins::startFromChordalRotations(&chordal)) return;
+  const double of_file = costOf(*graph, options), of_chordal = costOf(chordal, options);
+  const bool is_better = !(of_file <= of_chordal);
+  std::cout << std::setprecision(10) << "cost of the file's poses " << of_file
+            << ", of the chordal start " << of_chordal << ": starting from the "
+            << (is_better ? "chordal start" : "file's poses") << "\n";
+  if (is_better) *graph = std::move(chordal);
+}
+
+void placeAtStart(Start start, const vins::SixDofOptions& options, vins::RelativePoseGraph* graph) {
   const auto begin = Clock::now();
+  if (start == Start::kBest) placeAtBest(options, graph);
   if (start == Start::kOdometry) vins::startFromOdometry(graph);
   if (start == Start::kSpanningTree) vins::startFromSpanningTree(graph);
   if (start == Start::kChordal && !vins::startFromChordalRotations(graph)) {
@@ -128,7 +149,7 @@ bool optimize(const po::variables_map& values) {
   std::cout << file.graph.poses.size() << " poses in " << (file.graph.planar ? 2 : 3) << "-D, "
             << file.graph.edges.size() << " edges\n";
   const vins::RelativePoseGraph before = file.graph;
-  placeAtStart(start, &file.graph);
+  placeAtStart(start, options, &file.graph);
   std::cout << "iteration                cost   step length     restraint\n";
   const auto begin = Clock::now();
   const vins::MinimizerSummary summary = vins::optimizeSixDof(&file.graph, options);
@@ -150,7 +171,7 @@ bool printedHelp(const po::variables_map& values, const po::options_description&
                "the squared errors, weighted by the information matrices. Restraint: damping of\n"
                "Levenberg-Marquardt, radius of dogleg.\n"
                "Usage: optimize_g2o IN.g2o OUT.g2o [OPTIONS]\n"
-               "Example: optimize_g2o sphere.g2o best.g2o --start chordal --picture sphere.png\n"
+               "Example: optimize_g2o sphere.g2o best.g2o --picture sphere.png\n"
                "Exit code: 0 converged, 2 not (OUT is written unless it failed), 1 bad input.\n\n"
             << options;
   return true;
