@@ -21,6 +21,7 @@
 #include "camera_model/camera_file.h"
 #include "vins_core/input_error.h"
 #include "vins_core/progress_bar.h"
+#include "vins_core/run_tool.h"
 #include "vins_core/text_file.h"
 
 namespace fs = std::filesystem;
@@ -40,9 +41,8 @@ struct Arguments {
 };
 
 po::options_description describeOptions() {
-  po::options_description options("Options");
+  po::options_description options;
   auto add = options.add_options();
-  add("help", "print this text");
   add("width,w", po::value<int>()->default_value(8), "inner corners in a row of the board");
   add("height,h", po::value<int>()->default_value(12), "rows of inner corners");
   add("size,s", po::value<double>()->default_value(7.0), "edge of a square, in any unit");
@@ -68,22 +68,7 @@ po::options_description describeOptions() {
   return options;
 }
 
-/// Nothing where only the help was asked for.
-std::optional<Arguments> parseArguments(int argc, char** argv) {
-  const po::options_description options = describeOptions();
-  po::variables_map values;
-  try {
-    po::store(po::parse_command_line(argc, argv, options), values);
-  } catch (const po::error& error) {
-    throw vins::InputError(std::string(error.what()) + "; see --help");
-  }
-  if (values.count("help") > 0) {
-    std::cout << "Calibrates a camera from images of a chessboard.\n"
-                 "Usage: intrinsic_calibration -w 9 -h 6 -s 25 -i FOLDER --prefix left -e .jpg "
-                 "--camera-model pinhole\n\n"
-              << options;
-    return std::nullopt;
-  }
+Arguments readArguments(const po::variables_map& values) {
   Arguments arguments;
   arguments.calibration.board = {values["width"].as<int>(), values["height"].as<int>(),
                                  values["size"].as<double>()};
@@ -273,39 +258,37 @@ void writeResults(const Arguments& arguments, const std::vector<vins::Calibratio
             << "_coverage.png, " << name << "_residuals.png beside it\n";
 }
 
-int run(int argc, char** argv) {
-  std::optional<Arguments> arguments = parseArguments(argc, argv);
-  if (!arguments) return 0;
-  fs::create_directories(arguments->output);
-  const std::vector<fs::path> paths = listImages(*arguments);
-  const auto views = toViews(detectAll(paths, *arguments), &arguments->calibration.image_size);
+vins::ToolExit calibrate(const po::variables_map& values) {
+  Arguments arguments = readArguments(values);
+  fs::create_directories(arguments.output);
+  const std::vector<fs::path> paths = listImages(arguments);
+  const auto views = toViews(detectAll(paths, arguments), &arguments.calibration.image_size);
   std::cerr << "board found in " << views.size() << " of " << paths.size() << " images\n";
-  if (arguments->view_results) writeViews(*arguments, views);
+  if (arguments.view_results) writeViews(arguments, views);
   if (views.empty()) {
-    throw vins::InputError(arguments->input + ": no image shows a whole board of " +
-                           std::to_string(arguments->calibration.board.columns) + " x " +
-                           std::to_string(arguments->calibration.board.rows) +
+    throw vins::InputError(arguments.input + ": no image shows a whole board of " +
+                           std::to_string(arguments.calibration.board.columns) + " x " +
+                           std::to_string(arguments.calibration.board.rows) +
                            " inner corners; see -w and -h");
   }
-  const vins::Calibration calibration = vins::calibrate(arguments->calibration, views);
+  const vins::Calibration calibration = vins::calibrate(arguments.calibration, views);
   std::ostringstream report;
-  report << arguments->calibration << "\n"
+  report << arguments.calibration << "\n"
          << describeViews(views, calibration) << "\n"
          << describeResult(calibration);
   std::cout << report.str();
-  writeResults(*arguments, views, calibration, report.str());
-  return 0;
+  writeResults(arguments, views, calibration, report.str());
+  return vins::ToolExit::kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const vins::InputError& error) {
-    std::cerr << "intrinsic_calibration: " << error.what() << "\n";
-  } catch (const std::exception& error) {
-    std::cerr << "intrinsic_calibration: " << error.what() << "\n";
-  }
-  return 1;
+  const vins::ToolDescription tool{
+      "intrinsic_calibration",
+      "Calibrates a camera from images of a chessboard.\n"
+      "Usage: intrinsic_calibration -w 9 -h 6 -s 25 -i FOLDER --prefix left -e .jpg "
+      "--camera-model pinhole\n",
+      describeOptions()};
+  return vins::runTool(argc, argv, tool, calibrate);
 }

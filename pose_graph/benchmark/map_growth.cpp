@@ -16,6 +16,7 @@
 #include "vins_core/option_check.h"
 #include "vins_core/progress_bar.h"
 #include "vins_core/resident_memory.h"
+#include "vins_core/run_tool.h"
 #include "vins_core/text_file.h"
 #include "vins_core/wall_clock.h"
 
@@ -78,7 +79,7 @@ std::string rowOf(double time, const Study& study, const Costs& costs, vins::Pos
   return row;
 }
 
-void run(const Study& study) {
+void walkAndMeasure(const Study& study) {
   vins::simulation::TownWalk walk(study.walk);
   vins::PoseGraph graph(study.options, vins::testing::exampleCameras().front(), walk.places());
   const auto count = static_cast<std::size_t>(study.seconds / study.walk.period);
@@ -110,7 +111,6 @@ void run(const Study& study) {
 po::options_description describeOptions() {
   po::options_description options("Options");
   auto add = options.add_options();
-  add("help", "print this text");
   add("csv", po::value<std::string>()->required(), "table to write; a row for each minute");
   add("map", po::value<std::string>()->required(), "where the map is saved, again and again");
   add("seconds", po::value<double>()->default_value(3600.0), "of the walk");
@@ -144,24 +144,17 @@ Study readStudy(const po::variables_map& values) {
   return study;
 }
 
+vins::ToolExit run(const po::variables_map& values) {
+  walkAndMeasure(readStudy(values));
+  return vins::ToolExit::kDone;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = describeOptions();
-    po::variables_map values;
-    po::store(po::parse_command_line(argc, argv, options), values);
-    if (values.count("help") > 0) {
-      std::cout << "What an hour of simulated keyframes costs.\n"
-                   "Usage: map_growth --csv TABLE.csv --map FILE [options]\n"
-                << options;
-      return 0;
-    }
-    po::notify(values);
-    run(readStudy(values));
-    return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "map_growth: " << error.what() << "\n";
-  }
-  return 1;
+  const vins::ToolDescription tool{"map_growth",
+                                   "What an hour of simulated keyframes costs.\n"
+                                   "Usage: map_growth --csv TABLE.csv --map FILE [options]\n",
+                                   describeOptions()};
+  return vins::runTool(argc, argv, tool, run);
 }

@@ -15,6 +15,7 @@
 #include "pose_graph/graph/six_dof_start.h"
 #include "pose_graph/map/g2o_file.h"
 #include "vins_core/input_error.h"
+#include "vins_core/run_tool.h"
 
 namespace po = boost::program_options;
 
@@ -56,9 +57,8 @@ const std::map<std::string, vins::KernelType> kKernels = {
 
 po::options_description describeOptions() {
   const vins::SixDofOptions defaults;
-  po::options_description options("Options");
+  po::options_description options;
   auto add = options.add_options();
-  add("help", "print this text");
   add("in", po::value<std::string>()->required(), "graph to read");
   add("out", po::value<std::string>()->required(), "graph to write");
   add("method", po::value<std::string>()->default_value("levenberg-marquardt"),
@@ -140,8 +140,8 @@ void writePicture(const std::string& path, const vins::RelativePoseGraph& before
   if (!written) throw vins::InputError(path + ": cannot be written as an image");
 }
 
-/// True where the minimization came to an end.
-bool optimize(const po::variables_map& values) {
+/// Falls short where the minimization came to no end.
+vins::ToolExit optimize(const po::variables_map& values) {
   const vins::SixDofOptions options = readOptions(values);
   const Start start = choose("start", kStarts, values["start"].as<std::string>());
   vins::G2oFile file = vins::readG2oFile(values["in"].as<std::string>());
@@ -157,43 +157,27 @@ bool optimize(const po::variables_map& values) {
   std::cout << toString(summary.status) << " after " << summary.iterations << " iterations and "
             << std::setprecision(3) << seconds << " s: cost " << std::setprecision(10)
             << summary.initial_cost << " -> " << summary.final_cost << "\n";
-  if (summary.status == vins::MinimizerStatus::kFailed) return false;
+  if (summary.status == vins::MinimizerStatus::kFailed) return vins::ToolExit::kFellShort;
   vins::writeG2oFile(values["out"].as<std::string>(), file);
   if (values.count("picture") > 0) {
     writePicture(values["picture"].as<std::string>(), before, file.graph);
   }
-  return summary.status == vins::MinimizerStatus::kConverged;
-}
-
-bool printedHelp(const po::variables_map& values, const po::options_description& options) {
-  if (values.count("help") == 0) return false;
-  std::cout << "Optimizes a pose graph in g2o's format, of SE(2) or SE(3). Cost: half the sum of\n"
-               "the squared errors, weighted by the information matrices. Restraint: damping of\n"
-               "Levenberg-Marquardt, radius of dogleg.\n"
-               "Usage: optimize_g2o IN.g2o OUT.g2o [OPTIONS]\n"
-               "Example: optimize_g2o sphere.g2o best.g2o --picture sphere.png\n"
-               "Exit code: 0 converged, 2 not (OUT is written unless it failed), 1 bad input.\n\n"
-            << options;
-  return true;
+  return summary.status == vins::MinimizerStatus::kConverged ? vins::ToolExit::kDone
+                                                             : vins::ToolExit::kFellShort;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = describeOptions();
-    po::positional_options_description positional;
-    positional.add("in", 1).add("out", 1);
-    po::variables_map values;
-    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
-              values);
-    if (printedHelp(values, options)) return 0;
-    po::notify(values);
-    return optimize(values) ? 0 : 2;
-  } catch (const po::error& error) {
-    std::cerr << "optimize_g2o: " << error.what() << "; see --help\n";
-  } catch (const std::exception& error) {
-    std::cerr << "optimize_g2o: " << error.what() << "\n";
-  }
-  return 1;
+  const vins::ToolDescription tool{
+      "optimize_g2o",
+      "Optimizes a pose graph in g2o's format, of SE(2) or SE(3). Cost: half the sum of\n"
+      "the squared errors, weighted by the information matrices. Restraint: damping of\n"
+      "Levenberg-Marquardt, radius of dogleg.\n"
+      "Usage: optimize_g2o IN.g2o OUT.g2o [OPTIONS]\n"
+      "Example: optimize_g2o sphere.g2o best.g2o --picture sphere.png\n"
+      "Exit code: 0 converged, 2 not (OUT is written unless it failed), 1 bad input.\n",
+      describeOptions(),
+      {{"in", 1}, {"out", 1}}};
+  return vins::runTool(argc, argv, tool, optimize);
 }

@@ -14,6 +14,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/interrupt.h"
 #include "vins_core/progress_bar.h"
+#include "vins_core/run_tool.h"
 #include "vins_core/text_file.h"
 #include "vins_core/trajectory_file.h"
 #include "vins_pipeline/asl_folder.h"
@@ -26,8 +27,6 @@ namespace sim = vins::simulation;
 
 namespace {
 
-enum ExitCode { kDone = 0, kBadInput = 1, kInterrupted = 130 };
-
 using Texts = std::vector<std::string>;
 
 template <typename T>
@@ -39,7 +38,6 @@ void addMotionOptions(po::options_description* options) {
   std::string names;
   for (const std::string& name : sim::builtinTrajectoryNames()) names += name + ", ";
   auto add = options->add_options();
-  add("help", "print this text");
   add("output,o", po::value<std::string>()->required(), "bag to write");
   add("trajectory", withDefault<std::string>("hall_loop"),
       (names + "or a file of poses (TUM, EuRoC csv)").c_str());
@@ -91,7 +89,7 @@ void addFaultOptions(po::options_description* options) {
 }
 
 po::options_description describeOptions() {
-  po::options_description options("Options");
+  po::options_description options;
   addMotionOptions(&options);
   addImuOptions(&options);
   addCameraOptions(&options);
@@ -222,7 +220,7 @@ void writeTexts(const sim::SimulatedRecording& recording, const std::string& ste
   }
 }
 
-ExitCode simulate(const po::variables_map& values) {
+vins::ToolExit simulate(const po::variables_map& values) {
   const fs::path bag = values["output"].as<std::string>();
   const auto start = std::chrono::steady_clock::now();
   const sim::SimulatedRecording recording = sim::simulateRecording(readOptions(values));
@@ -234,7 +232,7 @@ ExitCode simulate(const po::variables_map& values) {
     vins::BagWriter writer(bag.string());
     if (!writeMessages(recording, &interrupt, &writer)) {
       std::cerr << "\nsimulate_bag: interrupted; " << bag.string() << " was not written\n";
-      return kInterrupted;
+      return vins::ToolExit::kInterrupted;
     }
     // The bag comes last: where it is, all of it is.
     writeTexts(recording, stem);
@@ -244,32 +242,19 @@ ExitCode simulate(const po::variables_map& values) {
   std::cout << "written: " << bag.string() << ", " << static_cast<double>(fs::file_size(bag)) / 1e6
             << " MB, " << recording.ground_truth.duration() << " s of flight in " << elapsed.count()
             << " s; " << stem << "_groundtruth.txt, " << stem << "_rig.yaml beside it\n";
-  return kDone;
+  return vins::ToolExit::kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = describeOptions();
-    po::variables_map values;
-    po::store(po::parse_command_line(argc, argv, options), values);
-    if (values.count("help") > 0) {
-      std::cout
-          << "Simulates a recording of a camera-IMU rig, with ground truth, as a ROS bag.\n"
-             "Example: simulate_bag -o hall.bag --trajectory hall_loop --duration 60\n"
-             "Beside hall.bag: hall_groundtruth.txt, hall_imu_biases.txt, hall_rig.yaml.\n\n"
-          << options
-          << "\nExit code: 0 written, 1 bad input or no room, 130 interrupted: then nothing is "
-             "written.\n";
-      return kDone;
-    }
-    po::notify(values);
-    return simulate(values);
-  } catch (const po::error& error) {
-    std::cerr << "simulate_bag: " << error.what() << "; see --help\n";
-  } catch (const std::exception& error) {
-    std::cerr << "simulate_bag: " << error.what() << "\n";
-  }
-  return kBadInput;
+  const vins::ToolDescription tool{
+      "simulate_bag",
+      "Simulates a recording of a camera-IMU rig, with ground truth, as a ROS bag.\n"
+      "Example: simulate_bag -o hall.bag --trajectory hall_loop --duration 60\n"
+      "Beside hall.bag: hall_groundtruth.txt, hall_imu_biases.txt, hall_rig.yaml.\n",
+      describeOptions(),
+      {},
+      "Exit code: 0 written, 1 bad input or no room, 130 interrupted: then nothing is written.\n"};
+  return vins::runTool(argc, argv, tool, simulate);
 }

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <string>
 
 #include <boost/program_options.hpp>
@@ -12,6 +11,7 @@
 #include "simulation/chessboard_images.h"
 #include "vins_core/input_error.h"
 #include "vins_core/progress_bar.h"
+#include "vins_core/run_tool.h"
 
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
@@ -19,9 +19,8 @@ namespace po = boost::program_options;
 namespace {
 
 po::options_description describeOptions() {
-  po::options_description options("Options");
+  po::options_description options;
   auto add = options.add_options();
-  add("help", "print this text");
   add("camera", po::value<std::string>()->required(), "camera file to render through");
   add("output,o", po::value<std::string>()->required(), "folder for the images; made if missing");
   add("count,n", po::value<int>()->default_value(30), "number of images");
@@ -33,7 +32,7 @@ po::options_description describeOptions() {
   return options;
 }
 
-void renderAll(const po::variables_map& values) {
+vins::ToolExit renderAll(const po::variables_map& values) {
   const auto camera = vins::readCameraFile(values["camera"].as<std::string>());
   const vins::Chessboard board{values["width"].as<int>(), values["height"].as<int>(),
                                values["size"].as<double>()};
@@ -57,26 +56,15 @@ void renderAll(const po::variables_map& values) {
     bar.update(static_cast<std::size_t>(i + 1));
   }
   bar.finish();
+  return vins::ToolExit::kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const po::options_description options = describeOptions();
-  try {
-    po::variables_map values;
-    po::store(po::parse_command_line(argc, argv, options), values);
-    if (values.count("help") > 0) {
-      std::cout << "Renders images of a chessboard through a known camera.\n"
-                   "Usage: simulate_chessboard --camera FILE -o FOLDER\n\n"
-                << options;
-      return 0;
-    }
-    po::notify(values);
-    renderAll(values);
-    return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "simulate_chessboard: " << error.what() << "\n";
-    return 1;
-  }
+  const vins::ToolDescription tool{"simulate_chessboard",
+                                   "Renders images of a chessboard through a known camera.\n"
+                                   "Usage: simulate_chessboard --camera FILE -o FOLDER\n",
+                                   describeOptions()};
+  return vins::runTool(argc, argv, tool, renderAll);
 }

@@ -11,6 +11,7 @@
 #include "simulation/odometry_study.h"
 #include "vins_core/input_error.h"
 #include "vins_core/progress_bar.h"
+#include "vins_core/run_tool.h"
 #include "vins_core/so3.h"
 #include "vins_core/text_file.h"
 
@@ -31,7 +32,6 @@ void addFlightOptions(po::options_description* options) {
   std::string names;
   for (const std::string& name : sim::builtinTrajectoryNames()) names += name + ", ";
   auto add = options->add_options();
-  add("help", "print this text");
   add("trajectory", withDefault<std::string>("hall_loop"),
       (names + "or a file of poses (TUM, EuRoC csv)").c_str());
   add("start", withDefault(features.start), "where in the trajectory to begin [s]");
@@ -80,7 +80,7 @@ void addEstimatorOptions(po::options_description* options) {
 }
 
 po::options_description describeOptions() {
-  po::options_description options("Options");
+  po::options_description options;
   addFlightOptions(&options);
   addSensorOptions(&options);
   addEstimatorOptions(&options);
@@ -130,8 +130,8 @@ void printMemory(const sim::OdometryRun& run) {
   std::cout << std::defaultfloat << "\n";
 }
 
-/// Flies all seeds; true where all were initialised.
-bool study(const po::variables_map& values) {
+/// Flies all seeds.
+vins::ToolExit study(const po::variables_map& values) {
   const sim::OdometryStudyOptions options = readOptions(values);
   const auto seeds = static_cast<std::size_t>(std::max(0, values["seeds"].as<int>()));
   const auto first = values["first-seed"].as<std::uint64_t>();
@@ -152,29 +152,17 @@ bool study(const po::variables_map& values) {
   sim::printTable(std::cout, figures);
   const std::string json = values["json"].as<std::string>();
   if (!json.empty()) vins::writeTextFile(json, sim::toJson(figures));
-  return all_initialised;
+  return all_initialised ? vins::ToolExit::kDone : vins::ToolExit::kFellShort;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = describeOptions();
-    po::variables_map values;
-    po::store(po::parse_command_line(argc, argv, options), values);
-    if (values.count("help") > 0) {
-      std::cout << "Follows simulated flights with the estimator, at the level of features.\n"
-                   "Example: simulate_odometry --trajectory fast --seeds 20 --json fast.json\n"
-                   "Exit code: 0 all initialised, 2 some did not, 1 bad input.\n\n"
-                << options;
-      return 0;
-    }
-    po::notify(values);
-    return study(values) ? 0 : 2;
-  } catch (const po::error& error) {
-    std::cerr << "simulate_odometry: " << error.what() << "; see --help\n";
-  } catch (const std::exception& error) {
-    std::cerr << "simulate_odometry: " << error.what() << "\n";
-  }
-  return 1;
+  const vins::ToolDescription tool{
+      "simulate_odometry",
+      "Follows simulated flights with the estimator, at the level of features.\n"
+      "Example: simulate_odometry --trajectory fast --seeds 20 --json fast.json\n"
+      "Exit code: 0 all initialised, 2 some did not, 1 bad input.\n",
+      describeOptions()};
+  return vins::runTool(argc, argv, tool, study);
 }

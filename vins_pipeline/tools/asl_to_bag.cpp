@@ -11,6 +11,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/interrupt.h"
 #include "vins_core/progress_bar.h"
+#include "vins_core/run_tool.h"
 #include "vins_pipeline/asl_folder.h"
 #include "vins_pipeline/bag_writer.h"
 #include "vins_pipeline/message_schedule.h"
@@ -74,11 +75,12 @@ void describe(const vins::AslRecording& recording) {
   }
 }
 
-enum ExitCode { kDone = 0, kBadInput = 1, kInterrupted = 130 };
-
-ExitCode convert(const std::string& folder, const std::string& bag_path,
-                 vins::MissingImages missing) {
-  const vins::AslRecording recording = vins::readAslFolder(folder, missing);
+vins::ToolExit convert(const po::variables_map& values) {
+  const std::string bag_path = values["bag"].as<std::string>();
+  const vins::AslRecording recording =
+      vins::readAslFolder(values["folder"].as<std::string>(),
+                          values["skip-missing-images"].as<bool>() ? vins::MissingImages::kSkip
+                                                                   : vins::MissingImages::kRefuse);
   describe(recording);
   const auto messages = scheduleOf(recording);
   vins::Interrupt interrupt;
@@ -87,7 +89,7 @@ ExitCode convert(const std::string& folder, const std::string& bag_path,
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (interrupt.isRequested()) {
       std::cerr << "\nasl_to_bag: interrupted; " << bag_path << " was not written\n";
-      return kInterrupted;
+      return vins::ToolExit::kInterrupted;
     }
     write(recording, messages[i], &bag);
     bar.update(i + 1);
@@ -97,50 +99,29 @@ ExitCode convert(const std::string& folder, const std::string& bag_path,
   const auto megabytes = static_cast<double>(std::filesystem::file_size(bag_path)) / 1e6;
   std::cout << "written: " << bag_path << ", " << messages.size() << " messages, " << megabytes
             << " MB\n";
-  return kDone;
+  return vins::ToolExit::kDone;
 }
 
 po::options_description describeOptions() {
-  po::options_description options("Options");
-  options.add_options()("help", "print this text")  //
-      ("folder", po::value<std::string>()->required(),
-       "folder of the recording: its mav0, the one above, or the one above that")(
-          "bag", po::value<std::string>()->required(), "bag to write")(
-          "skip-missing-images", po::bool_switch(),
-          "leave out images that are listed but not there, instead of refusing");
+  po::options_description options;
+  options.add_options()("folder", po::value<std::string>()->required(),
+                        "folder of the recording: its mav0, the one above, or the one above that")(
+      "bag", po::value<std::string>()->required(), "bag to write")(
+      "skip-missing-images", po::bool_switch(),
+      "leave out images that are listed but not there, instead of refusing");
   return options;
-}
-
-/// True where only the help was asked for.
-bool printedHelp(const po::variables_map& values, const po::options_description& options) {
-  if (values.count("help") == 0) return false;
-  std::cout << "Converts a recording in the ASL layout (EuRoC as it is distributed) to a ROS bag\n"
-               "with the topics /cam0/image_raw, /cam1/image_raw, /imu0, /ground_truth/pose.\n"
-               "Usage: asl_to_bag FOLDER OUT.bag\n"
-               "Example: asl_to_bag MH_01_easy MH_01_easy.bag\n\n"
-            << options;
-  return true;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = describeOptions();
-    po::positional_options_description positional;
-    positional.add("folder", 1).add("bag", 1);
-    po::variables_map values;
-    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
-              values);
-    if (printedHelp(values, options)) return kDone;
-    po::notify(values);
-    return convert(values["folder"].as<std::string>(), values["bag"].as<std::string>(),
-                   values["skip-missing-images"].as<bool>() ? vins::MissingImages::kSkip
-                                                            : vins::MissingImages::kRefuse);
-  } catch (const po::error& error) {
-    std::cerr << "asl_to_bag: " << error.what() << "; see --help\n";
-  } catch (const std::exception& error) {
-    std::cerr << "asl_to_bag: " << error.what() << "\n";
-  }
-  return kBadInput;
+  const vins::ToolDescription tool{
+      "asl_to_bag",
+      "Converts a recording in the ASL layout (EuRoC as it is distributed) to a ROS bag\n"
+      "with the topics /cam0/image_raw, /cam1/image_raw, /imu0, /ground_truth/pose.\n"
+      "Usage: asl_to_bag FOLDER OUT.bag\n"
+      "Example: asl_to_bag MH_01_easy MH_01_easy.bag\n",
+      describeOptions(),
+      {{"folder", 1}, {"bag", 1}}};
+  return vins::runTool(argc, argv, tool, convert);
 }

@@ -18,6 +18,7 @@
 #include "pose_graph/loop/match_drawing.h"
 #include "pose_graph/place/vocabulary_file.h"
 #include "vins_core/input_error.h"
+#include "vins_core/run_tool.h"
 #include "vins_core/text_file.h"
 
 namespace fs = std::filesystem;
@@ -114,7 +115,7 @@ void drawLoops(const std::vector<vins::StudiedKeyframe>& keyframes, const vins::
   }
 }
 
-void evaluate(const po::variables_map& values) {
+vins::ToolExit evaluate(const po::variables_map& values) {
   cv::setNumThreads(1);
   vins::PipelineOptions pipeline =
       vins::readPipelineOptions(values["config"].as<std::string>(), nullptr);
@@ -146,13 +147,13 @@ void evaluate(const po::variables_map& values) {
               << study.verify_worst_ms << " ms); largest view " << study.largest_view << " bytes\n";
     drawLoops(keyframes, study, options, values["pictures"].as<std::size_t>(), folder);
   }
+  return vins::ToolExit::kDone;
 }
 
 po::options_description describeOptions() {
   const vins::LoopDetectorOptions detector;
-  po::options_description options("Options");
+  po::options_description options;
   auto add = options.add_options();
-  add("help", "print this text");
   add("config", po::value<std::string>()->required(), "configuration file of the rig");
   add("recording", po::value<std::string>()->required(),
       "ROS bag or folder in the ASL layout, with ground truth");
@@ -181,24 +182,11 @@ po::options_description describeOptions() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = describeOptions();
-    po::variables_map values;
-    po::store(po::command_line_parser(argc, argv).options(options).run(), values);
-    if (values.count("help") != 0) {
-      std::cout << "Measures how well places are recognised, where the true path is known.\n"
-                   "Usage: evaluate_places --config RIG.yaml --recording BAG "
-                   "--vocabulary V.bin --pattern brief_pattern.yml\n\n"
-                << options;
-      return 0;
-    }
-    po::notify(values);
-    evaluate(values);
-    return 0;
-  } catch (const po::error& error) {
-    std::cerr << "evaluate_places: " << error.what() << "; see --help\n";
-  } catch (const std::exception& error) {
-    std::cerr << "evaluate_places: " << error.what() << "\n";
-  }
-  return 1;
+  const vins::ToolDescription tool{
+      "evaluate_places",
+      "Measures how well places are recognised, where the true path is known.\n"
+      "Usage: evaluate_places --config RIG.yaml --recording BAG "
+      "--vocabulary V.bin --pattern brief_pattern.yml\n",
+      describeOptions()};
+  return vins::runTool(argc, argv, tool, evaluate);
 }

@@ -22,6 +22,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/interrupt.h"
 #include "vins_core/progress_bar.h"
+#include "vins_core/run_tool.h"
 #include "vins_core/text_file.h"
 #include "vins_core/trajectory_file.h"
 #include "vins_pipeline/bag_recording.h"
@@ -35,8 +36,6 @@ namespace fs = std::filesystem;
 namespace po = boost::program_options;
 
 namespace {
-
-enum ExitCode { kDone = 0, kBadInput = 1, kNotTracking = 2, kInterrupted = 130 };
 
 /// A run in the making.
 struct Run {
@@ -295,7 +294,7 @@ void requireAlignment(const std::string& name) {
   throw vins::InputError("--align: found '" + name + "'; allowed: none, posyaw, se3, sim3");
 }
 
-int runBag(const po::variables_map& values) {
+vins::ToolExit runBag(const po::variables_map& values) {
   requireAlignment(values["align"].as<std::string>());
   // One thread: the same bytes everywhere, and the CPU time of the work itself.
   cv::setNumThreads(1);
@@ -324,16 +323,16 @@ int runBag(const po::variables_map& values) {
     writeFiles(folder, run);
   }
   printSummary(run, folder);
-  if (run.interrupted) return kInterrupted;
+  if (run.interrupted) return vins::ToolExit::kInterrupted;
   report(values, folder, run);
   if (!run.maps.error.empty()) throw vins::InputError(run.maps.error);
-  return run.results.odometries() > 0 && run.results.isTracking() ? kDone : kNotTracking;
+  const bool is_tracking = run.results.odometries() > 0 && run.results.isTracking();
+  return is_tracking ? vins::ToolExit::kDone : vins::ToolExit::kFellShort;
 }
 
 po::options_description describeOptions() {
-  po::options_description options("Options");
+  po::options_description options;
   auto add = options.add_options();
-  add("help", "print this text");
   add("config", po::value<std::string>()->required(),
       "configuration of the rig, in VINS-Mono's form");
   add("bag", po::value<std::string>()->required(), "a ROS bag, or a folder in the ASL layout");
@@ -357,44 +356,24 @@ po::options_description describeOptions() {
   return options;
 }
 
-void printHelp(const po::options_description& options) {
-  std::cout
-      << "Visual-inertial odometry and loop closing on a recording, as fast as the machine "
-         "allows.\n"
-         "Nothing is dropped, and the same recording gives the same bytes.\n"
-         "Usage: run_bag CONFIG BAG [options]\n"
-         "Example: run_bag config/euroc/euroc_config.yaml MH_01_easy.bag --out mh01\n\n"
-      << options
-      << "\nWritten to the folder: vio_live.txt (TUM, each pose as it was known at its\n"
-         "frame), loop_live.txt (corrected by the loops known then), loop_final.txt (by all\n"
-         "loops), vins_result_no_loop.csv and vins_result_loop.csv (VINS-Mono's form),\n"
-         "timing.json, events.csv, of each frame what the tracker and the estimator had\n"
-         "(tracker.csv, estimator.csv: tracks, landmarks, standard deviations) and, with\n"
-         "ground truth, ground_truth.txt, report.html, evaluation.json.\n"
-         "Exit code: 0 initialised and tracking to the end, 1 bad input, 2 never initialised\n"
-         "or lost at the end, 130 interrupted (what was done so far is written).\n";
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = describeOptions();
-    po::positional_options_description positional;
-    positional.add("config", 1).add("bag", 1);
-    po::variables_map values;
-    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
-              values);
-    if (values.count("help") > 0) {
-      printHelp(options);
-      return kDone;
-    }
-    po::notify(values);
-    return runBag(values);
-  } catch (const po::error& error) {
-    std::cerr << "run_bag: " << error.what() << "; see --help\n";
-  } catch (const std::exception& error) {
-    std::cerr << "run_bag: " << error.what() << "\n";
-  }
-  return kBadInput;
+  const vins::ToolDescription tool{
+      "run_bag",
+      "Visual-inertial odometry and loop closing on a recording, as fast as the machine allows.\n"
+      "Nothing is dropped, and the same recording gives the same bytes.\n"
+      "Usage: run_bag CONFIG BAG [options]\n"
+      "Example: run_bag config/euroc/euroc_config.yaml MH_01_easy.bag --out mh01\n",
+      describeOptions(),
+      {{"config", 1}, {"bag", 1}},
+      "Written to the folder: vio_live.txt (TUM, each pose as it was known at its\n"
+      "frame), loop_live.txt (corrected by the loops known then), loop_final.txt (by all\n"
+      "loops), vins_result_no_loop.csv and vins_result_loop.csv (VINS-Mono's form),\n"
+      "timing.json, events.csv, of each frame what the tracker and the estimator had\n"
+      "(tracker.csv, estimator.csv: tracks, landmarks, standard deviations) and, with\n"
+      "ground truth, ground_truth.txt, report.html, evaluation.json.\n"
+      "Exit code: 0 initialised and tracking to the end, 1 bad input, 2 never initialised\n"
+      "or lost at the end, 130 interrupted (what was done so far is written).\n"};
+  return vins::runTool(argc, argv, tool, runBag);
 }

@@ -14,6 +14,7 @@
 #include "pose_graph/place/vocabulary_training.h"
 #include "vins_core/input_error.h"
 #include "vins_core/progress_bar.h"
+#include "vins_core/run_tool.h"
 
 namespace po = boost::program_options;
 
@@ -67,7 +68,7 @@ ImageDescriptors describe(const std::vector<vins::ImageLoader>& images,
   return descriptors;
 }
 
-void train(const po::variables_map& values) {
+vins::ToolExit train(const po::variables_map& values) {
   cv::setNumThreads(1);
   vins::VocabularyTrainingOptions options;
   options.branching = values["k"].as<int>();
@@ -85,13 +86,13 @@ void train(const po::variables_map& values) {
   vins::writeVocabulary(path, vocabulary);
   std::cout << "written: " << path << ", " << vocabulary.wordCount() << " words of "
             << vocabulary.nodeCount() << " nodes\n";
+  return vins::ToolExit::kDone;
 }
 
 po::options_description describeOptions() {
   const vins::VocabularyTrainingOptions defaults;
-  po::options_description options("Options");
+  po::options_description options;
   auto add = options.add_options();
-  add("help", "print this text");
   add("input", po::value<std::vector<std::string>>()->required(),
       "images, folders of images, folders in the ASL layout, ROS bags");
   add("output,o", po::value<std::string>()->required(), "vocabulary to write");
@@ -115,26 +116,11 @@ po::options_description describeOptions() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = describeOptions();
-    po::positional_options_description positional;
-    positional.add("input", -1);
-    po::variables_map values;
-    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(),
-              values);
-    if (values.count("help") != 0) {
-      std::cout << "Trains the vocabulary by which the pose graph recognises places.\n"
-                   "Usage: train_vocabulary INPUT ... -o OUT.bin --pattern brief_pattern.yml\n\n"
-                << options;
-      return 0;
-    }
-    po::notify(values);
-    train(values);
-    return 0;
-  } catch (const po::error& error) {
-    std::cerr << "train_vocabulary: " << error.what() << "; see --help\n";
-  } catch (const std::exception& error) {
-    std::cerr << "train_vocabulary: " << error.what() << "\n";
-  }
-  return 1;
+  const vins::ToolDescription tool{
+      "train_vocabulary",
+      "Trains the vocabulary by which the pose graph recognises places.\n"
+      "Usage: train_vocabulary INPUT ... -o OUT.bin --pattern brief_pattern.yml\n",
+      describeOptions(),
+      {{"input", -1}}};
+  return vins::runTool(argc, argv, tool, train);
 }
