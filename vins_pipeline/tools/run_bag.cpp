@@ -312,6 +312,7 @@ int runBag(const po::variables_map& values) {
     writeFiles(folder, run);
   }
   printSummary(run, folder);
+  if (!std::cout.flush()) throw vins::InputError("standard output: cannot be written");
   if (run.interrupted) return kInterrupted;
   report(values, folder, run);
   if (!run.maps.error.empty()) throw vins::InputError(run.maps.error);
@@ -356,8 +357,9 @@ void printHelp(const po::options_description& options) {
          "loops), vins_result_no_loop.csv and vins_result_loop.csv (VINS-Mono's form),\n"
          "timing.json, events.csv and, with ground truth, ground_truth.txt, report.html, "
          "evaluation.json.\n"
-         "Exit code: 0 initialised and tracking to the end, 1 bad input, 2 never initialised\n"
-         "or lost at the end, 130 interrupted (what was done so far is written).\n";
+         "Exit code: 0 initialised and tracking to the end, 1 bad input or no room for a file,\n"
+         "2 never initialised or lost at the end, 130 interrupted (what was done so far is\n"
+         "written).\n";
 }
 
 }  // namespace
