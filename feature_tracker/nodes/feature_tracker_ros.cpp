@@ -12,6 +12,7 @@
 #include "feature_tracker/track_drawing.h"
 #include "vins_core/input_error.h"
 #include "vins_msgs/conversions.h"
+#include "vins_msgs/node_configuration.h"
 
 namespace vins {
 namespace {
@@ -45,12 +46,7 @@ FeatureTrackerRos::~FeatureTrackerRos() {
 }
 
 void FeatureTrackerRos::readConfiguration() {
-  std::string path;
-  if (!private_handle_.getParam("config_file", path) || path.empty()) {
-    throw InputError("parameter '" + private_handle_.resolveName("config_file") +
-                     "' is missing; needed: path of the rig's YAML file");
-  }
-  const Parameters parameters = Parameters::load(path);
+  const Parameters parameters = vins_msgs::loadConfiguration(private_handle_);
   rig_ = readRigConfiguration(parameters);
   options_ = readFeatureTrackerOptions(parameters);
   const cv::Mat mask = readMaskFile(options_.mask_file, rig_.cameras.front()->imageSize());
@@ -59,7 +55,7 @@ void FeatureTrackerRos::readConfiguration() {
   queue_ = std::make_unique<InputQueue>(rig_.cameras.size() == 2, uses_imu_);
   std::ostringstream text;
   text << options_;
-  ROS_INFO_STREAM("feature tracker, from " << path << ":\n" << text.str());
+  ROS_INFO_STREAM("feature tracker, from " << parameters.name() << ":\n" << text.str());
   if (!uses_imu_)
     ROS_WARN("no imu_topic or no extrinsic rotation: tracks are predicted without it");
 }

@@ -8,8 +8,8 @@
 
 #include "camera_model/camera_file.h"
 #include "vins_core/input_error.h"
-#include "vins_core/parameters.h"
 #include "vins_msgs/conversions.h"
+#include "vins_msgs/node_configuration.h"
 
 namespace vins {
 namespace {
@@ -17,15 +17,6 @@ namespace {
 constexpr std::size_t kMaxWaiting = 400;   // several seconds of keyframes and odometries
 constexpr std::size_t kRecentImages = 60;  // three seconds at 20 Hz: the estimator may be behind
 constexpr std::size_t kRecentEvents = 5;
-
-Parameters loadConfiguration(const ros::NodeHandle& private_node) {
-  std::string path;
-  if (!private_node.getParam("config_file", path)) {
-    throw InputError("parameter '" + private_node.resolveName("config_file") +
-                     "' is not set; allowed: the path of the rig's YAML file");
-  }
-  return Parameters::load(path);
-}
 
 PoseGraphFrames framesOf(const ros::NodeHandle& private_node) {
   PoseGraphFrames frames;
@@ -62,13 +53,16 @@ cv::Mat toGrey(const sensor_msgs::Image::ConstPtr& message) {
 
 }  // namespace
 
-PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node)
-    : configuration_(readPoseGraphConfiguration(loadConfiguration(private_node))),
+PoseGraphRos::PoseGraphRos(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : PoseGraphRos(node, private_node, vins_msgs::loadConfiguration(private_node)) {}
+
+PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
+                           const Parameters& parameters)
+    : configuration_(readPoseGraphConfiguration(parameters)),
       publisher_(private_node, framesOf(private_node)),
       pictures_(static_cast<std::size_t>(configuration_.options.thinning.max_keyframes)),
       images_(kRecentImages),
       diagnostics_(node, private_node) {
-  const Parameters parameters = loadConfiguration(private_node);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("pose graph", this, &PoseGraphRos::report);
   timer_ = node.createTimer(ros::Duration(1.0),

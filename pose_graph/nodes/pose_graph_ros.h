@@ -38,7 +38,7 @@ namespace vins {
 class PoseGraphRos {
  public:
   /// Throws InputError for a configuration or a map that is missing or malformed.
-  PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node);
+  PoseGraphRos(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   PoseGraphRos(const PoseGraphRos&) = delete;
   PoseGraphRos& operator=(const PoseGraphRos&) = delete;
   ~PoseGraphRos();
@@ -52,6 +52,7 @@ class PoseGraphRos {
   using Input =
       std::variant<Keyframe, KeyframePoseUpdate, LoopEdge, nav_msgs::Odometry, MapRequest>;
 
+  PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node, const Parameters& parameters);
   void subscribe(ros::NodeHandle node);
   void onImage(const sensor_msgs::Image::ConstPtr& message);
   void push(Input input);

@@ -3,6 +3,7 @@
 
 import json
 import os
+import subprocess
 import time
 import unittest
 
@@ -58,10 +59,7 @@ class ToolEndsTest(ProcessCase):
                                    "vins_result_no_loop.csv", "vio_live.txt"])
         with open(self._path("a/new/folder/timing.json"), encoding="utf-8") as file:
             self.assertGreater(json.load(file)["data_seconds"], 6.0)
-        with open(self._path("a/new/folder/vio_live.txt"), encoding="utf-8") as file:
-            lines = file.read().splitlines()
-        self.assertGreater(len(lines), 50)
-        self.assertEqual({len(line.split()) for line in lines}, {8})
+        self._assert_whole(self._path("a/new/folder/vio_live.txt"))
 
     def test_run_bag_on_a_full_disk(self):
         bag = simulated_bags.simulated(simulated_bags.LOOP)
@@ -70,6 +68,36 @@ class ToolEndsTest(ProcessCase):
                            self._path("out"), **processes.full_disk(6000))
         self._assert_refused(tool, "cannot be written: File too large")
         self.assertEqual([name for name in paths_below(self.folder) if name.endswith(".part")], [])
+
+    def test_run_bag_without_room_for_what_comes_last(self):
+        bag = simulated_bags.simulated(simulated_bags.LOOP)
+        # Poses of 8 s take 10 kB, the page with its plots 100 kB and more; so does the ground truth
+        # at the IMU's rate, but not every tenth pose of it.
+        sparse = self._path("sparse.txt")
+        with open(bag.ground_truth, encoding="utf-8") as all_poses:
+            with open(sparse, "w", encoding="utf-8") as some_poses:
+                some_poses.writelines(list(all_poses)[::10])
+        for name, truth in (("report.html", sparse), ("ground_truth.txt", bag.ground_truth)):
+            with self.subTest(name):
+                out = self._path(name + "_missing")
+                tool = self._start("run_bag", bag.rig, bag.bag, "--duration", "8", "--out", out,
+                                   "--ground-truth", truth, **processes.full_disk(60000))
+                self._assert_refused(tool, "run_bag: " + os.path.join(out, name))
+                self.assertIn("File too large", tool.output())
+                self.assertNotIn("Traceback", tool.output())
+                self.assertNotIn(name, paths_below(out))
+                self.assertNotIn(name + ".part", paths_below(out))
+                self._assert_whole(os.path.join(out, "vio_live.txt"))
+
+    def test_run_bag_without_room_for_what_it_says(self):
+        bag = simulated_bags.simulated(simulated_bags.LOOP)
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            tool = subprocess.run([files.program("vins_pipeline", "run_bag"), bag.rig, bag.bag,
+                                   "--duration", "8", "--out", self._path("out")], stdout=full,
+                                  stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+        self.assertEqual(tool.returncode, 1, tool.stderr)
+        self.assertIn("run_bag: standard output: cannot be written", tool.stderr)
+        self._assert_whole(self._path("out/vio_live.txt"))
 
     def _path(self, name):
         return os.path.join(self.folder, name)
@@ -85,6 +113,12 @@ class ToolEndsTest(ProcessCase):
             self.assertTrue(tool.is_running() and time.monotonic() < end, tool.output())
             time.sleep(0.02)
         time.sleep(0.3)  # into the midst of writing
+
+    def _assert_whole(self, poses):
+        with open(poses, encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        self.assertGreater(len(lines), 50)
+        self.assertEqual({len(line.split()) for line in lines}, {8})
 
     def _assert_interrupted(self, tool):
         self.assertTrue(tool.is_running(), "it ended too early: " + tool.output())

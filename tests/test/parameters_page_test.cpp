@@ -19,6 +19,7 @@
 #include "feature_tracker/tracker_options.h"
 #include "pose_graph/pose_graph_options.h"
 #include "vins_core/input_error.h"
+#include "vins_core/rig_keys.h"
 #include "vins_estimator/estimator_options.h"
 #include "vins_pipeline/pipeline.h"
 
@@ -210,6 +211,15 @@ TEST_F(ParametersPage, HasNoKeyThatTheCodeDoesNotKnow) {
       EXPECT_TRUE(isKnown(row.key)) << row.key;
     }
   }
+}
+
+/// By this list a node knows the keys of the other stages; it must not warn of them.
+TEST_F(ParametersPage, HasTheKeysThatTheNodesKnow) {
+  std::set<std::string> in_page;
+  for (const Row& row : rowsOfPage()) in_page.insert(row.key);
+  const std::vector<std::string> keys = rigKeys();
+  EXPECT_EQ(std::set<std::string>(keys.begin(), keys.end()), in_page)
+      << "vins_core/src/rig_keys.cpp and docs/parameters.md differ";
 }
 
 TEST_F(ParametersPage, NamesTheAllowedValuesAsTheCodeDoes) {

@@ -221,6 +221,10 @@ Parameters Parameters::section(const std::string& key) const {
   return {name_ + ": " + key, std::make_shared<Section>(Section{section_->file, node, {}})};
 }
 
+void Parameters::know(const std::vector<std::string>& keys) const {
+  section_->asked.insert(keys.begin(), keys.end());
+}
+
 std::vector<std::string> Parameters::warnings() const {
   const std::vector<std::string> known(section_->asked.begin(), section_->asked.end());
   std::vector<std::string> lines;

@@ -113,6 +113,13 @@ TEST_F(ParametersTest, WarningsNameKeysThatNobodyAskedFor) {
   EXPECT_EQ(warnings[1], "r.yaml:3: unknown key 'whatever' is ignored");
 }
 
+TEST_F(ParametersTest, WarningsLeaveOutKeysThatOthersRead) {
+  const Parameters rig = Parameters::parse("freq: 10\nwindow: {a: 1}\nfrek: 1\n", "r.yaml");
+  rig.know({"freq", "window", "is_not_in_the_file"});
+  EXPECT_EQ(rig.warnings(), std::vector<std::string>(
+                                {"r.yaml:3: unknown key 'frek' is ignored; did you mean 'freq'?"}));
+}
+
 TEST(Parameters, RefusesWhatIsNoMapOfUniqueKeys) {
   EXPECT_EQ(errorOf([] { Parameters::parse("", "f"); }),
             "f: found nothing; allowed: lines of the form 'key: value'");

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "vins_core/input_error.h"
-#include "vins_core/parameters.h"
 #include "vins_msgs/conversions.h"
+#include "vins_msgs/node_configuration.h"
 
 namespace vins {
 namespace {
@@ -15,15 +15,6 @@ constexpr std::size_t kRecentEvents = 5;
 constexpr std::size_t kManyWaiting = 5;  // frames: a quarter of a second behind at 20 Hz
 constexpr double kSilence = 2.0;         // without input, before somebody is told [s]
 const char* const kFeatureTopic = "/feature_tracker/feature";
-
-Parameters loadConfiguration(const ros::NodeHandle& private_node) {
-  std::string path;
-  if (!private_node.getParam("config_file", path)) {
-    throw InputError("parameter '" + private_node.resolveName("config_file") +
-                     "' is not set; allowed: the path of the rig's YAML file");
-  }
-  return Parameters::load(path);
-}
 
 EstimatorOptions loadOptions(const Parameters& parameters) {
   const EstimatorOptions options = readEstimatorOptions(parameters);
@@ -65,13 +56,16 @@ auto tryFromMsg(const Message& message) -> std::optional<decltype(vins_msgs::fro
 
 }  // namespace
 
-EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node)
-    : options_(loadOptions(loadConfiguration(private_node))),
+EstimatorRos::EstimatorRos(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : EstimatorRos(node, private_node, vins_msgs::loadConfiguration(private_node)) {}
+
+EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
+                           const Parameters& parameters)
+    : options_(loadOptions(parameters)),
       estimator_(options_),
       publisher_(private_node, framesOf(private_node)),
       propagator_(options_.imu),
       diagnostics_(node, private_node) {
-  const Parameters parameters = loadConfiguration(private_node);
   imu_topic_ = parameters.text("imu_topic");
   diagnostics_.setHardwareID("visual-inertial rig");
   diagnostics_.add("estimator", this, &EstimatorRos::report);

@@ -32,7 +32,7 @@ namespace vins {
 class EstimatorRos {
  public:
   /// Throws InputError for a configuration that is missing or malformed.
-  EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node);
+  EstimatorRos(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   EstimatorRos(const EstimatorRos&) = delete;
   EstimatorRos& operator=(const EstimatorRos&) = delete;
   ~EstimatorRos();
@@ -46,6 +46,7 @@ class EstimatorRos {
     bool restart = false;
   };
 
+  EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node, const Parameters& parameters);
   void onImu(const sensor_msgs::Imu::ConstPtr& message);
   void onFeatures(const vins_msgs::FeatureFrame::ConstPtr& message);
   void onLoopMatch(const vins_msgs::LoopMatch::ConstPtr& message);

@@ -13,13 +13,6 @@ constexpr Stamp kJump = 1'000'000'000;  ///< stamps that fall by more begin a ne
 /// Images kept for keyframes to come: more than a window, from which the first keyframes are.
 constexpr std::size_t kRecentImages = 30;
 
-/// Keys that other programs read from the same file: known, and of no meaning here.
-void knowKeysOfOthers(const Parameters& parameters) {
-  for (const char* key : {"output_path", "visualize_imu_forward", "visualize_camera_size"}) {
-    parameters.textOr(key, "");
-  }
-}
-
 void append(std::vector<Event>* all, const std::vector<Event>& events) {
   all->insert(all->end(), events.begin(), events.end());
 }
@@ -58,7 +51,8 @@ PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::st
   options.image_topics[0] = parameters.textOr("image_topic", options.image_topics[0]);
   options.loops = readPoseGraphConfiguration(parameters);
   if (options.loops.is_on && options.loops.loads_map) options.map = options.loops.map_file;
-  knowKeysOfOthers(parameters);
+  // Of VINS-Mono, and of no meaning here.
+  parameters.know({"output_path", "visualize_imu_forward", "visualize_camera_size"});
   if (warnings != nullptr) *warnings = parameters.warnings();
   return options;
 }

@@ -323,6 +323,7 @@ vins::ToolExit runBag(const po::variables_map& values) {
     writeFiles(folder, run);
   }
   printSummary(run, folder);
+  if (!std::cout.flush()) throw vins::InputError("standard output: cannot be written");
   if (run.interrupted) return vins::ToolExit::kInterrupted;
   report(values, folder, run);
   if (!run.maps.error.empty()) throw vins::InputError(run.maps.error);
@@ -373,7 +374,8 @@ int main(int argc, char** argv) {
       "timing.json, events.csv, of each frame what the tracker and the estimator had\n"
       "(tracker.csv, estimator.csv: tracks, landmarks, standard deviations) and, with\n"
       "ground truth, ground_truth.txt, report.html, evaluation.json.\n"
-      "Exit code: 0 initialised and tracking to the end, 1 bad input, 2 never initialised\n"
-      "or lost at the end, 130 interrupted (what was done so far is written).\n"};
+      "Exit code: 0 initialised and tracking to the end, 1 bad input or no room for a file,\n"
+      "2 never initialised or lost at the end, 130 interrupted (what was done so far is\n"
+      "written).\n"};
   return vins::runTool(argc, argv, tool, runBag);
 }

@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "vins_core/input_error.h"
+
 namespace fs = std::filesystem;
 
 namespace vins {
@@ -64,8 +66,8 @@ bool makeReport(const TrajectoryReport& report) {
                    {"--align", report.alignment, "--html", report.html, "--json", report.json});
   const int exit_code = runProgram(arguments);
   if (exit_code == 0) return true;
-  std::cerr << "no report: " << program << " ended with code " << exit_code << "\n";
-  return false;
+  throw InputError(report.html + ": not made, the other files are whole; " + program +
+                   " has ended with code " + std::to_string(exit_code));
 }
 
 }  // namespace vins

@@ -22,7 +22,9 @@ std::string findEvaluation();
 /// 127 where it could not be run.
 int runProgram(const std::vector<std::string>& arguments);
 
-/// Prints figures and writes the page; tells in one line why it does not. True where it does.
+/// Prints figures and writes the page. False, and told in one line, where evaluate_trajectory is
+/// not installed. Throws InputError naming the page where it could not be made: evaluate_trajectory
+/// has then told why, naming the file.
 bool makeReport(const TrajectoryReport& report);
 
 }  // namespace vins

@@ -55,6 +55,11 @@ def is_covariance(matrix):
     return asymmetry <= 1e-6 * np.abs(matrix).max() and np.linalg.eigvalsh(matrix).min() > 0.0
 
 
+def seconds(stamp, bag_start):
+    """Seconds from a bag's start to a stamp, both in nanoseconds."""
+    return 1e-9 * (stamp - bag_start)
+
+
 def time_of(pose, bag_start):
     """Seconds from a bag's start (nanoseconds) to a pose."""
-    return 1e-9 * (pose.stamp - bag_start)
+    return seconds(pose.stamp, bag_start)

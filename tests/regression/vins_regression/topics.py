@@ -18,12 +18,15 @@ def stamp_of(header):
 
 def pose_of(message, arrival):
     """StampedPose of a nav_msgs/Odometry that arrived at a time (seconds)."""
-    pose = message.pose.pose
     return StampedPose(
         stamp_of(message.header), arrival, message.header.frame_id, message.child_frame_id,
-        (pose.position.x, pose.position.y, pose.position.z),
-        (pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w),
-        np.array(message.pose.covariance).reshape(6, 6))
+        *_coordinates(message.pose.pose), np.array(message.pose.covariance).reshape(6, 6))
+
+
+def poses_of(path):
+    """StampedPoses of a nav_msgs/Path, which knows neither arrivals nor covariances."""
+    return [StampedPose(stamp_of(item.header), None, path.header.frame_id, "",
+                        *_coordinates(item.pose), None) for item in path.poses]
 
 
 def told(message):
@@ -41,3 +44,9 @@ def frame_number(message):
     _, seconds, nanoseconds, length = struct.unpack_from("<4I", message._buff)
     sequence, = struct.unpack_from("<I", message._buff, 16 + length)
     return seconds * 1000000000 + nanoseconds, sequence
+
+
+def _coordinates(pose):
+    """Position and quaternion of a geometry_msgs/Pose."""
+    return ((pose.position.x, pose.position.y, pose.position.z),
+            (pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w))

@@ -66,6 +66,9 @@ class Parameters {
   /// The map at `key`, as parameters of their own.
   Parameters section(const std::string& key) const;
 
+  /// Remembers keys that others read from the same map, as if a getter had asked for them.
+  void know(const std::vector<std::string>& keys) const;
+
   /// One text for each key in this map that no getter asked for, with its line and a likely
   /// meaning: "rig.yaml:12: unknown key 'max_cn' is ignored; did you mean 'max_cnt'?".
   std::vector<std::string> warnings() const;
