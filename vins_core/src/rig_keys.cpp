@@ -1,101 +1,106 @@
 #include "vins_core/rig_keys.h"
 
-namespace vins {
+#include <iterator>
 
-std::vector<std::string> rigKeys() {
-  return {
-      // Topics and results
-      "imu_topic",
-      "image_topic",
-      "output_path",
-      // Camera
-      "model_type",
-      "camera_name",
-      "image_width",
-      "image_height",
-      "projection_parameters",
-      "distortion_parameters",
-      "mirror_parameters",
-      "poly_parameters",
-      "affine_parameters",
-      "inv_poly_parameters",
-      "cam0",
-      // Camera in the body frame
-      "estimate_extrinsic",
-      "extrinsicRotation",
-      "extrinsicTranslation",
-      "extrinsic_rotation_sigma",
-      "extrinsic_translation_sigma",
-      // Time
-      "td",
-      "estimate_td",
-      "td_sigma",
-      "rolling_shutter",
-      "rolling_shutter_tr",
-      // IMU
-      "acc_n",
-      "gyr_n",
-      "acc_w",
-      "gyr_w",
-      "imu_noise_unit",
-      "imu_rate",
-      "g_norm",
-      "vibration_share",
-      "accelerometer_noise_density",
-      "gyroscope_noise_density",
-      "accelerometer_random_walk",
-      "gyroscope_random_walk",
-      "imu0",
-      // Feature tracker
-      "max_cnt",
-      "min_dist",
-      "freq",
-      "F_threshold",
-      "equalize",
-      "show_track",
-      "fisheye",
-      "fisheye_mask",
-      "min_tracks",
-      "feature_border",
-      "corner_quality",
-      "klt_window",
-      "klt_levels",
-      "klt_backward",
-      "max_image_gap",
-      "tracker_seed",
-      // Estimator
-      "window_size",
-      "keyframe_parallax",
-      "pixel_noise",
-      "max_num_iterations",
-      "max_solver_time",
-      "motion_only_ba",
-      // Loops and maps
-      "loop_closure",
-      "fast_relocalization",
-      "min_loop_inliers",
-      "loop_max_drift",
-      "position_drift",
-      "yaw_drift",
-      "max_keyframes",
-      "skip_dis",
-      "skip_cnt",
-      "load_previous_pose_graph",
-      "pose_graph_save_path",
-      "save_image",
-      "vocabulary_file",
-      "brief_pattern_file",
-      // Two cameras
-      "image0_topic",
-      "image1_topic",
-      "cam0_calib",
-      "cam1_calib",
-      "body_T_cam0",
-      "body_T_cam1",
-      // Of VINS-Mono, without effect
-      "visualize_imu_forward",
-      "visualize_camera_size",
-  };
-}
+namespace vins {
+namespace {
+
+constexpr const char* kKeys[] = {
+    // Topics and results
+    "imu_topic",
+    "image_topic",
+    "output_path",
+    // Camera
+    "model_type",
+    "camera_name",
+    "image_width",
+    "image_height",
+    "projection_parameters",
+    "distortion_parameters",
+    "mirror_parameters",
+    "poly_parameters",
+    "affine_parameters",
+    "inv_poly_parameters",
+    "cam0",
+    // Camera in the body frame
+    "estimate_extrinsic",
+    "extrinsicRotation",
+    "extrinsicTranslation",
+    "extrinsic_rotation_sigma",
+    "extrinsic_translation_sigma",
+    // Time
+    "td",
+    "estimate_td",
+    "td_sigma",
+    "rolling_shutter",
+    "rolling_shutter_tr",
+    // IMU
+    "acc_n",
+    "gyr_n",
+    "acc_w",
+    "gyr_w",
+    "imu_noise_unit",
+    "imu_rate",
+    "g_norm",
+    "vibration_share",
+    "accelerometer_noise_density",
+    "gyroscope_noise_density",
+    "accelerometer_random_walk",
+    "gyroscope_random_walk",
+    "imu0",
+    // Feature tracker
+    "max_cnt",
+    "min_dist",
+    "freq",
+    "F_threshold",
+    "equalize",
+    "show_track",
+    "fisheye",
+    "fisheye_mask",
+    "min_tracks",
+    "feature_border",
+    "corner_quality",
+    "klt_window",
+    "klt_levels",
+    "klt_backward",
+    "max_image_gap",
+    "tracker_seed",
+    // Estimator
+    "window_size",
+    "keyframe_parallax",
+    "pixel_noise",
+    "max_num_iterations",
+    "max_solver_time",
+    "motion_only_ba",
+    // Loops and maps
+    "loop_closure",
+    "fast_relocalization",
+    "min_loop_inliers",
+    "loop_max_drift",
+    "position_drift",
+    "yaw_drift",
+    "max_keyframes",
+    "skip_dis",
+    "skip_cnt",
+    "load_previous_pose_graph",
+    "pose_graph_save_path",
+    "save_image",
+    "vocabulary_file",
+    "brief_pattern_file",
+    // Two cameras
+    "image0_topic",
+    "image1_topic",
+    "cam0_calib",
+    "cam1_calib",
+    "body_T_cam0",
+    "body_T_cam1",
+    // Of VINS-Mono, without effect
+    "visualize_imu_forward",
+    "visualize_camera_size",
+};
+
+}  // namespace
+
+std::vector<std::string> rigKeys() { return {std::begin(kKeys), std::end(kKeys)}; }
 
 }  // namespace vins
