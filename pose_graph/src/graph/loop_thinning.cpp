@@ -10,9 +10,8 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// A loop by its ends in time.
+/// A loop by its ends in time; its number is that in the graph's list.
 struct Candidate {
-  std::size_t index = 0;  ///< in the graph's list
   SequenceNumber old_sequence = 0, query_sequence = 0;
   Stamp old_stamp = 0, query_stamp = 0;
   bool is_there = true;
@@ -31,8 +30,8 @@ class LoopCrowd {
     for (const LoopEdge& loop : graph.loops()) {
       const KeyframeVertex& old = graph.vertices().at(loop.old_id);
       const KeyframeVertex& query = graph.vertices().at(loop.query_id);
-      candidates_.push_back({candidates_.size(), old.sequence, query.sequence, old.stamp,
-                             query.stamp, true, kNever, 0});
+      candidates_.push_back(
+          {old.sequence, query.sequence, old.stamp, query.stamp, true, kNever, 0});
     }
     for (std::size_t i = 0; i < candidates_.size(); ++i) findNeighbour(i);
   }
@@ -50,7 +49,7 @@ class LoopCrowd {
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       if (candidates_[i].is_there && candidates_[i].neighbour == number) findNeighbour(i);
     }
-    return chosen->index;
+    return number;
   }
 
  private:
