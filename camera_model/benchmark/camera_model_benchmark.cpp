@@ -9,7 +9,7 @@
 
 namespace {
 
-std::vector<Eigen::Vector2d> gridOf(const vins::Camera& camera) {
+std::vector<Eigen::Vector2d> gridOf(const vins::camera_model::Camera& camera) {
   std::vector<Eigen::Vector2d> pixels;
   for (int v = 5; v < camera.imageSize().height; v += 23) {
     for (int u = 5; u < camera.imageSize().width; u += 23) {
@@ -20,9 +20,10 @@ std::vector<Eigen::Vector2d> gridOf(const vins::Camera& camera) {
 }
 
 void unprojectPoint(benchmark::State& state) {
-  const auto camera = vins::testing::exampleCameras()[static_cast<std::size_t>(state.range(0))];
+  const auto camera =
+      vins::camera_model::testing::exampleCameras()[static_cast<std::size_t>(state.range(0))];
   const auto pixels = gridOf(*camera);
-  state.SetLabel(vins::toString(camera->model()));
+  state.SetLabel(toString(camera->model()));
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(camera->unproject(pixels[i]));
@@ -31,14 +32,15 @@ void unprojectPoint(benchmark::State& state) {
 }
 
 void projectPoint(benchmark::State& state) {
-  const auto camera = vins::testing::exampleCameras()[static_cast<std::size_t>(state.range(0))];
+  const auto camera =
+      vins::camera_model::testing::exampleCameras()[static_cast<std::size_t>(state.range(0))];
   const bool with_jacobians = state.range(1) != 0;
   std::vector<Eigen::Vector3d> points;
   for (const auto& pixel : gridOf(*camera)) points.push_back(3.0 * *camera->unproject(pixel));
-  state.SetLabel(std::string(vins::toString(camera->model())) +
+  state.SetLabel(std::string(toString(camera->model())) +
                  (with_jacobians ? " with Jacobians" : ""));
   std::size_t i = 0;
-  vins::ProjectionJacobians jacobians;
+  vins::camera_model::ProjectionJacobians jacobians;
   for (auto _ : state) {
     benchmark::DoNotOptimize(camera->project(points[i], with_jacobians ? &jacobians : nullptr));
     if (++i == points.size()) i = 0;

@@ -10,7 +10,7 @@
 #include "calibration_start.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr std::size_t kMinViews = 3;
@@ -237,4 +237,4 @@ Calibration calibrate(const CalibrationOptions& options,
   return calibration;
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -8,7 +8,7 @@
 
 #include "calibration_quality.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 const cv::Scalar kPaper(250, 250, 250);
@@ -167,4 +167,4 @@ cv::Mat drawResiduals(ImageSize size, const std::vector<CalibrationView>& views,
   return withCaption(both, text);
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

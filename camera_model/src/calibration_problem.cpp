@@ -12,7 +12,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 /// A board's pose as six numbers: rotation vector [rad], then position.
@@ -264,4 +264,4 @@ std::vector<Eigen::Vector2d> cornerResiduals(const Camera& camera, const Pose& T
   return residuals;
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

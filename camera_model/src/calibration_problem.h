@@ -8,7 +8,7 @@
 
 #include "camera_model/calibration.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// The state of a calibration under way.
 struct CalibrationState {
@@ -46,4 +46,4 @@ std::vector<Eigen::Vector2d> cornerResiduals(const Camera& camera, const Pose& T
                                              const std::vector<Eigen::Vector3d>& board_points,
                                              const CalibrationView& view);
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr int kMinViews = 8;
@@ -178,4 +178,4 @@ std::vector<std::string> weaknesses(const CalibrationOptions& options,
   return texts;
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

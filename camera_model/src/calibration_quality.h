@@ -5,7 +5,7 @@
 
 #include "camera_model/calibration.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Cells of the image in which coverage is counted.
 constexpr int kCoverageColumns = 8;
@@ -20,4 +20,4 @@ std::vector<std::string> weaknesses(const CalibrationOptions& options,
                                     const std::vector<CalibrationView>& views,
                                     const Calibration& calibration);
 
-}  // namespace vins
+}  // namespace vins::camera_model

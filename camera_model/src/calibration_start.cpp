@@ -9,7 +9,7 @@
 #include "camera_model/pinhole_radtan.h"
 #include "camera_model/scaramuzza.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 /// Focal lengths as shares of the image's width, from a half-sphere in 60 % of it to a telephoto
@@ -123,4 +123,4 @@ std::optional<Pose> poseOfView(const Camera& camera, const std::vector<Eigen::Ve
   return planarPose(points, bearings);
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

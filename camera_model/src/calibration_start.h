@@ -8,7 +8,7 @@
 
 #include "camera_model/calibration.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Cameras of the model without distortion, for a range of focal lengths, centred in the image.
 std::vector<std::unique_ptr<Camera>> startingCameras(const CalibrationOptions& options);
@@ -23,4 +23,4 @@ std::optional<Pose> planarPose(const std::vector<Eigen::Vector3d>& points,
 std::optional<Pose> poseOfView(const Camera& camera, const std::vector<Eigen::Vector3d>& points,
                                const std::vector<Eigen::Vector2d>& corners);
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -7,7 +7,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 const char* toString(CameraModel model) {
   switch (model) {
@@ -61,4 +61,4 @@ void Camera::requireCount(CameraModel model, const CameraParameters& parameters,
                    " parameters; allowed: " + std::to_string(count));
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

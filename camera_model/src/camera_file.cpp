@@ -11,7 +11,7 @@
 #include "camera_model/scaramuzza.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr int kInversePolynomialCount = 20;   ///< coefficients that camodocal's reader expects
@@ -247,4 +247,4 @@ std::string toKalibrYaml(const Camera& camera, const std::string& kalibr_camera)
   return text.str();
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -10,7 +10,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 using Corners = std::vector<cv::Point2f>;
@@ -93,4 +93,4 @@ std::optional<std::vector<Eigen::Vector2d>> detectChessboard(const cv::Mat& gray
   return pixels;
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

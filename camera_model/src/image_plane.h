@@ -7,7 +7,7 @@
 
 #include "camera_model/camera.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Factors by which the pixel grid grows from one image size to another.
 inline Eigen::Vector2d scaleBetween(ImageSize from, ImageSize to) {
@@ -30,4 +30,4 @@ inline double scalePixel(double coordinate, double scale) {
   return (coordinate + 0.5) * scale - 0.5;
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

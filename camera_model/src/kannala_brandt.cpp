@@ -4,7 +4,7 @@
 
 #include "image_plane.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr int kCount = 8;
@@ -103,4 +103,4 @@ std::unique_ptr<Camera> KannalaBrandt::scaledTo(ImageSize size) const {
   return std::make_unique<KannalaBrandt>(name(), size, p);
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -4,7 +4,7 @@
 
 #include "image_plane.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr int kCount = 9;
@@ -100,4 +100,4 @@ std::unique_ptr<Camera> Mei::scaledTo(ImageSize size) const {
   return std::make_unique<Mei>(name(), size, p);
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

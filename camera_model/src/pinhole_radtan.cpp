@@ -2,7 +2,7 @@
 
 #include "image_plane.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr int kCount = 9;
@@ -82,4 +82,4 @@ std::unique_ptr<Camera> PinholeRadtan::scaledTo(ImageSize size) const {
   return std::make_unique<PinholeRadtan>(name(), size, p);
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

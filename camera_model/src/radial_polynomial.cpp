@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr int kNodes = 257;
@@ -75,4 +75,4 @@ std::optional<double> RadialPolynomial::invert(double distorted) const {
   return r;
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

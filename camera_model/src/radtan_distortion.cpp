@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr double kLimit = 50.0;  ///< radius of a ray 88.9 degrees from the axis of a pinhole
@@ -85,4 +85,4 @@ std::optional<Eigen::Vector2d> RadtanDistortion::undistort(const Eigen::Vector2d
   return std::nullopt;
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -8,7 +8,7 @@
 
 #include "image_plane.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr int kCount = 10;
@@ -175,4 +175,4 @@ std::vector<double> Scaramuzza::fitInversePolynomial(int count) const {
   return {c.data(), c.data() + c.size()};
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

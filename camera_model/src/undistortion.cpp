@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-namespace vins {
+namespace vins::camera_model {
 
 UndistortionMap makeUndistortionMap(const Camera& camera, const Eigen::Matrix3d& K, ImageSize size,
                                     const Eigen::Matrix3d& R_cv) {
@@ -20,4 +20,4 @@ UndistortionMap makeUndistortionMap(const Camera& camera, const Eigen::Matrix3d&
   return map;
 }
 
-}  // namespace vins
+}  // namespace vins::camera_model

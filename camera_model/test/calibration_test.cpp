@@ -16,7 +16,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/testing/shared_data.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 using Eigen::Vector2d;
@@ -188,11 +188,11 @@ TEST_P(SimulatedCalibration, LeavesOutWrongCornersAndWrongViews) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllModels, SimulatedCalibration,
-                         ::testing::ValuesIn(testing::exampleCameras()),
+                         ::testing::ValuesIn(vins::camera_model::testing::exampleCameras()),
                          [](const auto& info) { return info.param->name(); });
 
 TEST(Calibration, WarnsWhereViewsAreTooWeak) {
-  const auto truth = testing::exampleCameras()[0];
+  const auto truth = vins::camera_model::testing::exampleCameras()[0];
   // Boards straight ahead, all facing the same way, in the middle of the image.
   std::vector<CalibrationView> views;
   for (int i = 0; i < 5; ++i) {
@@ -213,7 +213,7 @@ TEST(Calibration, WarnsWhereViewsAreTooWeak) {
 }
 
 TEST(Calibration, RefusesWhatCannotBeCalibrated) {
-  const auto truth = testing::exampleCameras()[0];
+  const auto truth = vins::camera_model::testing::exampleCameras()[0];
   auto views = BoardSimulator(*truth, 5).views(6, 0.1);
   const CalibrationOptions options = optionsFor(*truth);
   EXPECT_THROW(calibrate(options, {views[0], views[1]}), InputError);
@@ -237,7 +237,7 @@ TEST(Calibration, RefusesWhatCannotBeCalibrated) {
 }
 
 TEST(Calibration, PicturesShowTheCorners) {
-  const auto truth = testing::exampleCameras()[0];
+  const auto truth = vins::camera_model::testing::exampleCameras()[0];
   const auto views = BoardSimulator(*truth, 7).views(10, kNoise);
   const CalibrationOptions options = optionsFor(*truth);
   const Calibration calibration = calibrate(options, views);
@@ -258,7 +258,7 @@ TEST(Calibration, PicturesShowTheCorners) {
 class RealChessboard : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RealChessboard, FitsNoWorseThanOpencvOnTheSameCorners) {
-  const std::string folder = testing::sharedData("chessboard");
+  const std::string folder = vins::testing::sharedData("chessboard");
   VINS_SKIP_WITHOUT(folder);
   CalibrationOptions options;
   options.board = {9, 6, 25.0};
@@ -304,4 +304,4 @@ TEST_P(RealChessboard, FitsNoWorseThanOpencvOnTheSameCorners) {
 INSTANTIATE_TEST_SUITE_P(Photographs, RealChessboard, ::testing::Values("left", "right"));
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -10,7 +10,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/text_file.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 using testing::parametersOf;
@@ -98,7 +98,7 @@ TEST(CameraFile, ReadsKalibrCamchains) {
 }
 
 TEST(CameraFile, CamodocalFormRoundTripsExactly) {
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const auto back = read(toCamodocalYaml(*camera));
     EXPECT_EQ(back->model(), camera->model());
     EXPECT_EQ(back->name(), camera->name());
@@ -108,7 +108,7 @@ TEST(CameraFile, CamodocalFormRoundTripsExactly) {
 }
 
 TEST(CameraFile, KalibrFormRoundTripsExactly) {
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     if (camera->model() == CameraModel::kScaramuzza) continue;
     const auto back = read(toKalibrYaml(*camera, "cam3"), "cam3");
     EXPECT_EQ(back->model(), camera->model());
@@ -117,22 +117,23 @@ TEST(CameraFile, KalibrFormRoundTripsExactly) {
 }
 
 TEST(CameraFile, RefusesToWriteWhatKalibrHasNoFormFor) {
-  EXPECT_THROW(toKalibrYaml(*testing::exampleCameras()[3]), InputError);
-  CameraParameters p = testing::exampleCameras()[0]->parameters();
+  EXPECT_THROW(toKalibrYaml(*vins::camera_model::testing::exampleCameras()[3]), InputError);
+  CameraParameters p = vins::camera_model::testing::exampleCameras()[0]->parameters();
   p[8] = 0.01;
-  EXPECT_THROW(toKalibrYaml(*testing::exampleCameras()[0]->withParameters(p)), InputError);
+  EXPECT_THROW(toKalibrYaml(*vins::camera_model::testing::exampleCameras()[0]->withParameters(p)),
+               InputError);
 }
 
 TEST(CameraFile, KeepsK3) {
-  CameraParameters p = testing::exampleCameras()[0]->parameters();
+  CameraParameters p = vins::camera_model::testing::exampleCameras()[0]->parameters();
   p[8] = 0.0123;
-  const auto camera = testing::exampleCameras()[0]->withParameters(p);
+  const auto camera = vins::camera_model::testing::exampleCameras()[0]->withParameters(p);
   EXPECT_EQ(read(toCamodocalYaml(*camera))->parameters(), p);
 }
 
 TEST(CameraFile, WritesWhatOpencvsReaderReads) {
   // VINS-Mono and camodocal read by cv::FileStorage.
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const cv::FileStorage storage(toCamodocalYaml(*camera),
                                   cv::FileStorage::READ | cv::FileStorage::MEMORY);
     EXPECT_EQ(static_cast<std::string>(storage["model_type"]), toString(camera->model()));
@@ -153,7 +154,7 @@ TEST(CameraFile, WritesWhatOpencvsReaderReads) {
 }
 
 TEST(CameraFile, OcamsInversePolynomialIsNearTheInverse) {
-  const auto cameras = testing::exampleCameras();
+  const auto cameras = vins::camera_model::testing::exampleCameras();
   const auto& camera = static_cast<const Scaramuzza&>(*cameras[3]);
   const std::vector<double> c = camera.fitInversePolynomial(14);
   for (double u = 10.0; u < 790.0; u += 20.0) {
@@ -193,4 +194,4 @@ TEST(CameraFile, ReadsFromDisk) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -11,7 +11,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/testing/numeric_jacobian.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 using Eigen::Vector2d;
@@ -21,7 +21,7 @@ using testing::parametersOf;
 /// Every model's example camera, and harder ones: strong tangential distortion, k3, a long lens,
 /// xi on both sides of 1, sheared OCam.
 std::vector<std::shared_ptr<const Camera>> cameras() {
-  auto all = testing::exampleCameras();
+  auto all = vins::camera_model::testing::exampleCameras();
   const ImageSize vga{640, 480};
   all.push_back(std::make_shared<PinholeRadtan>(
       "tangential", vga, parametersOf({530, 531, 342, 234, -0.28, 0.10, 0.004, -0.003, -0.04})));
@@ -152,7 +152,7 @@ TEST_P(CameraTest, PointJacobianAgreesWithNumericDifferences) {
     const auto f = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
       return *camera().project(*p + Vector3d(d));
     };
-    const Eigen::MatrixXd numeric = testing::numericJacobian(f, 3, 1e-4 * p->norm());
+    const Eigen::MatrixXd numeric = vins::testing::numericJacobian(f, 3, 1e-4 * p->norm());
     expectColumnsNear(jacobians.J_pixel_point, numeric, 1e-7);
   }
   EXPECT_GT(valid, 300);
@@ -176,7 +176,7 @@ TEST_P(CameraTest, ParameterJacobianAgreesWithNumericDifferences) {
         moved[k] += d[0];
         return *camera().withParameters(moved)->project(*p);
       };
-      expectColumnsNear(J, testing::numericJacobian(f, 1, step), 1e-7);
+      expectColumnsNear(J, vins::testing::numericJacobian(f, 1, step), 1e-7);
     }
   }
   EXPECT_GT(compared, 200);
@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(AllModels, CameraTest, ::testing::ValuesIn(cameras()),
                          });
 
 TEST(PinholeRadtan, SeesNothingBehindOrBeyondTheFoldOfItsDistortion) {
-  const auto camera = testing::exampleCameras()[0];
+  const auto camera = vins::camera_model::testing::exampleCameras()[0];
   EXPECT_FALSE(camera->project({0.1, 0.1, -1.0}));
   EXPECT_FALSE(camera->project({0.1, 0.1, 0.0}));
   // 1 + 3 k1 r^2 = 0 at r = 1: from there on points would fold back into the image.
@@ -263,7 +263,7 @@ TEST(Mei, SeesNothingBelowTheFoldOfTheSphere) {
 }
 
 TEST(Camera, ContainsPixelsOfTheImage) {
-  const auto camera = testing::exampleCameras()[0];
+  const auto camera = vins::camera_model::testing::exampleCameras()[0];
   EXPECT_TRUE(camera->contains({0.0, 0.0}));
   EXPECT_TRUE(camera->contains({751.0, 479.0}));
   EXPECT_FALSE(camera->contains({751.1, 479.0}));
@@ -278,4 +278,4 @@ TEST(Camera, ModelNamesAreReadInAnySpelling) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::camera_model

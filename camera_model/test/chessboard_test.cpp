@@ -7,7 +7,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 constexpr int kMargin = 60;
@@ -74,4 +74,4 @@ TEST(Chessboard, RefusesWhatIsNoBoard) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -11,7 +11,7 @@
 
 #include "camera_model/testing/example_cameras.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 using testing::parametersOf;
@@ -78,4 +78,4 @@ TEST(OpencvAgreement, MeiIsOmnidir) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::camera_model

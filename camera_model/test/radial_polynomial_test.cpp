@@ -7,7 +7,7 @@
 #include "camera_model/radtan_distortion.h"
 #include "vins_core/testing/numeric_jacobian.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 TEST(RadialPolynomial, InverseIsExactUpToTheEndOfTheRange) {
@@ -42,7 +42,7 @@ TEST(RadialPolynomial, SlopeIsTheDerivative) {
       const double x = r + d[0];
       return Eigen::VectorXd::Constant(1, x * polynomial.ratio(x * x));
     };
-    EXPECT_NEAR(polynomial.slope(r * r), testing::numericJacobian(f, 1)(0, 0), 1e-10);
+    EXPECT_NEAR(polynomial.slope(r * r), vins::testing::numericJacobian(f, 1)(0, 0), 1e-10);
   }
 }
 
@@ -67,4 +67,4 @@ TEST(RadtanDistortion, UndistortsToTheLastDigits) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -6,7 +6,7 @@
 
 #include "camera_model/testing/example_cameras.h"
 
-namespace vins {
+namespace vins::camera_model {
 namespace {
 
 Eigen::Matrix3d intrinsicMatrix(double f, double cx, double cy) {
@@ -16,7 +16,7 @@ Eigen::Matrix3d intrinsicMatrix(double f, double cx, double cy) {
 }
 
 TEST(UndistortionMap, IsOpencvsForAPinhole) {
-  const auto camera = testing::exampleCameras()[0];
+  const auto camera = vins::camera_model::testing::exampleCameras()[0];
   const UndistortionMap map =
       makeUndistortionMap(*camera, intrinsicMatrix(400.0, 370.0, 240.0), {752, 480});
   cv::Mat map_x, map_y;
@@ -30,7 +30,7 @@ TEST(UndistortionMap, IsOpencvsForAPinhole) {
 }
 
 TEST(UndistortionMap, LooksAlongTheTurnedAxis) {
-  const auto camera = testing::exampleCameras()[1];
+  const auto camera = vins::camera_model::testing::exampleCameras()[1];
   const Eigen::Matrix3d R = Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const UndistortionMap map =
       makeUndistortionMap(*camera, intrinsicMatrix(100.0, 50.0, 50.0), {101, 101}, R);
@@ -40,7 +40,7 @@ TEST(UndistortionMap, LooksAlongTheTurnedAxis) {
 }
 
 TEST(UndistortionMap, MarksWhatTheCameraDoesNotSee) {
-  const auto camera = testing::exampleCameras()[0];
+  const auto camera = vins::camera_model::testing::exampleCameras()[0];
   const Eigen::Matrix3d behind =
       Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const UndistortionMap map =
@@ -50,4 +50,4 @@ TEST(UndistortionMap, MarksWhatTheCameraDoesNotSee) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::camera_model

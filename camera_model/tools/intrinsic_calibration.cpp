@@ -30,7 +30,7 @@ namespace po = boost::program_options;
 namespace {
 
 struct Arguments {
-  vins::CalibrationOptions calibration;
+  vins::camera_model::CalibrationOptions calibration;
   std::string input;
   std::string prefix;
   std::string extension;
@@ -73,7 +73,7 @@ Arguments readArguments(const po::variables_map& values) {
   arguments.calibration.board = {values["width"].as<int>(), values["height"].as<int>(),
                                  values["size"].as<double>()};
   arguments.calibration.model =
-      vins::cameraModelFromString(values["camera-model"].as<std::string>());
+      vins::camera_model::cameraModelFromString(values["camera-model"].as<std::string>());
   arguments.calibration.camera_name = values["camera-name"].as<std::string>();
   arguments.calibration.estimate_k3 = !values["no-k3"].as<bool>();
   arguments.calibration.reject_outliers = !values["keep-outliers"].as<bool>();
@@ -86,7 +86,7 @@ Arguments readArguments(const po::variables_map& values) {
   arguments.verbose = values["verbose"].as<bool>();
   if (arguments.write_kalibr) {
     arguments.calibration.estimate_k3 = false;
-    if (arguments.calibration.model == vins::CameraModel::kScaramuzza) {
+    if (arguments.calibration.model == vins::camera_model::CameraModel::kScaramuzza) {
       throw vins::InputError("--kalibr: found the model scaramuzza, for which Kalibr has no form");
     }
   }
@@ -120,11 +120,11 @@ std::vector<fs::path> listImages(const Arguments& arguments) {
 /// An image of the input folder and what was found in it.
 struct Detection {
   fs::path path;
-  vins::ImageSize size;  ///< zero where the file is no image
+  vins::camera_model::ImageSize size;  ///< zero where the file is no image
   std::optional<std::vector<Eigen::Vector2d>> corners;
 };
 
-Detection detect(const fs::path& path, const vins::Chessboard& board) {
+Detection detect(const fs::path& path, const vins::camera_model::Chessboard& board) {
   Detection detection;
   detection.path = path;
   const cv::Mat gray = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
@@ -151,9 +151,9 @@ std::vector<Detection> detectAll(const std::vector<fs::path>& paths, const Argum
   return detections;
 }
 
-std::vector<vins::CalibrationView> toViews(const std::vector<Detection>& detections,
-                                           vins::ImageSize* size) {
-  std::vector<vins::CalibrationView> views;
+std::vector<vins::camera_model::CalibrationView> toViews(const std::vector<Detection>& detections,
+                                                         vins::camera_model::ImageSize* size) {
+  std::vector<vins::camera_model::CalibrationView> views;
   for (const Detection& detection : detections) {
     const std::string name = detection.path.filename().string();
     if (detection.size.width == 0) {
@@ -177,12 +177,12 @@ std::vector<vins::CalibrationView> toViews(const std::vector<Detection>& detecti
   return views;
 }
 
-std::string describeViews(const std::vector<vins::CalibrationView>& views,
-                          const vins::Calibration& calibration) {
+std::string describeViews(const std::vector<vins::camera_model::CalibrationView>& views,
+                          const vins::camera_model::Calibration& calibration) {
   std::ostringstream text;
   text << "image                          rms [px]   corners left out\n";
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const vins::ViewFit& fit = calibration.views[i];
+    const vins::camera_model::ViewFit& fit = calibration.views[i];
     char line[160];
     if (fit.used) {
       std::snprintf(
@@ -197,7 +197,7 @@ std::string describeViews(const std::vector<vins::CalibrationView>& views,
   return text.str();
 }
 
-std::string describeResult(const vins::Calibration& calibration) {
+std::string describeResult(const vins::camera_model::Calibration& calibration) {
   std::ostringstream text;
   char line[160];
   const auto names = calibration.camera->parameterNames();
@@ -227,33 +227,37 @@ void writeImage(const fs::path& path, const cv::Mat& image) {
   }
 }
 
-void writeViews(const Arguments& arguments, const std::vector<vins::CalibrationView>& views) {
-  for (const vins::CalibrationView& view : views) {
+void writeViews(const Arguments& arguments,
+                const std::vector<vins::camera_model::CalibrationView>& views) {
+  for (const vins::camera_model::CalibrationView& view : views) {
     cv::Mat image = cv::imread((fs::path(arguments.input) / view.name).string());
     std::vector<cv::Point2f> corners;
     for (const Eigen::Vector2d& corner : view.corners) {
       corners.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
     }
-    const vins::Chessboard& board = arguments.calibration.board;
+    const vins::camera_model::Chessboard& board = arguments.calibration.board;
     cv::drawChessboardCorners(image, {board.columns, board.rows}, corners, true);
     writeImage(fs::path(arguments.output) / ("corners_" + view.name), image);
   }
 }
 
-void writeResults(const Arguments& arguments, const std::vector<vins::CalibrationView>& views,
-                  const vins::Calibration& calibration, const std::string& report) {
+void writeResults(const Arguments& arguments,
+                  const std::vector<vins::camera_model::CalibrationView>& views,
+                  const vins::camera_model::Calibration& calibration, const std::string& report) {
   const fs::path folder = arguments.output;
   const std::string name = arguments.calibration.camera_name;
   const fs::path yaml = folder / (name + "_camera_calib.yaml");
-  vins::writeTextFile(yaml.string(), vins::toCamodocalYaml(*calibration.camera));
+  vins::writeTextFile(yaml.string(), vins::camera_model::toCamodocalYaml(*calibration.camera));
   vins::writeTextFile((folder / (name + "_report.txt")).string(), report);
   if (arguments.write_kalibr) {
     vins::writeTextFile((folder / (name + "_camchain.yaml")).string(),
-                        vins::toKalibrYaml(*calibration.camera));
+                        vins::camera_model::toKalibrYaml(*calibration.camera));
   }
-  const vins::ImageSize size = arguments.calibration.image_size;
-  writeImage(folder / (name + "_coverage.png"), vins::drawCoverage(size, views, calibration));
-  writeImage(folder / (name + "_residuals.png"), vins::drawResiduals(size, views, calibration));
+  const vins::camera_model::ImageSize size = arguments.calibration.image_size;
+  writeImage(folder / (name + "_coverage.png"),
+             vins::camera_model::drawCoverage(size, views, calibration));
+  writeImage(folder / (name + "_residuals.png"),
+             vins::camera_model::drawResiduals(size, views, calibration));
   std::cout << "written: " << yaml.string() << ", and " << name << "_report.txt, " << name
             << "_coverage.png, " << name << "_residuals.png beside it\n";
 }
@@ -271,7 +275,8 @@ vins::ToolExit calibrate(const po::variables_map& values) {
                            std::to_string(arguments.calibration.board.rows) +
                            " inner corners; see -w and -h");
   }
-  const vins::Calibration calibration = vins::calibrate(arguments.calibration, views);
+  const vins::camera_model::Calibration calibration =
+      vins::camera_model::calibrate(arguments.calibration, views);
   std::ostringstream report;
   report << arguments.calibration << "\n"
          << describeViews(views, calibration) << "\n"

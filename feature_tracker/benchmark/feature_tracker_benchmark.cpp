@@ -20,8 +20,8 @@
 
 namespace {
 
-using vins::TrackerStage;
-using vins::testing::ImageSequence;
+using vins::feature_tracker::TrackerStage;
+using vins::feature_tracker::testing::ImageSequence;
 
 constexpr std::size_t kStages = 5;
 
@@ -99,7 +99,7 @@ struct TrackBook {
   double images = 0.0, survivors = 0.0, inlier_ratio = 0.0, features = 0.0, mean_length = 0.0;
   std::map<std::int64_t, int> lengths;  ///< of every track that there was, at its end
 
-  void add(const vins::FeatureTrackerResult& result) {
+  void add(const vins::feature_tracker::FeatureTrackerResult& result) {
     for (const auto& observation : result.frame->observations) {
       lengths[observation.id] = observation.track_length;
     }
@@ -128,26 +128,28 @@ struct TrackBook {
 void drawIfAsked(const ImageSequence& sequence, std::size_t i, const vins::FeatureFrame& frame) {
   const char* path = std::getenv("VINS_TRACK_PICTURE");
   if (path == nullptr) return;
-  cv::imwrite(path, vins::drawTracks(sequence.image(i), frame, *sequence.camera()));
+  cv::imwrite(path,
+              vins::feature_tracker::drawTracks(sequence.image(i), frame, *sequence.camera()));
 }
 
-vins::FeatureTracker makeTracker(const ImageSequence& sequence,
-                                 const vins::FeatureTrackerOptions& options) {
-  return vins::FeatureTracker({sequence.camera()}, {sequence.bodyToCamera()}, options);
+vins::feature_tracker::FeatureTracker makeTracker(
+    const ImageSequence& sequence, const vins::feature_tracker::FeatureTrackerOptions& options) {
+  return vins::feature_tracker::FeatureTracker({sequence.camera()}, {sequence.bodyToCamera()},
+                                               options);
 }
 
 /// Every image of the sequence; `gyroscope`: with its samples.
 void trackSequence(benchmark::State& state, bool gyroscope, bool equalize) {
   cv::setNumThreads(1);
-  const auto sequence = vins::testing::measuredSequence();
-  vins::FeatureTrackerOptions options;
-  if (equalize) options.equalization = vins::Equalization::kWhereDull;
-  vins::FeatureTracker tracker = makeTracker(*sequence, options);
+  const auto sequence = vins::feature_tracker::testing::measuredSequence();
+  vins::feature_tracker::FeatureTrackerOptions options;
+  if (equalize) options.equalization = vins::feature_tracker::Equalization::kWhereDull;
+  vins::feature_tracker::FeatureTracker tracker = makeTracker(*sequence, options);
   StageClock clock;
   TrackBook book;
   tracker.observeStages([&clock](TrackerStage stage) { clock.stageEnds(stage); });
   std::size_t i = 0;
-  vins::FeatureTrackerResult result;
+  vins::feature_tracker::FeatureTrackerResult result;
   for (auto _ : state) {
     const cv::Mat image = sequence->image(i);
     const vins::Stamp stamp = sequence->stamp(i);
@@ -168,13 +170,13 @@ void trackSequence(benchmark::State& state, bool gyroscope, bool equalize) {
 /// Memory over a long run: of the second half, after the first one has reached its level.
 void memoryOverALongRun(benchmark::State& state) {
   cv::setNumThreads(1);
-  const auto sequence = vins::testing::measuredSequence();
+  const auto sequence = vins::feature_tracker::testing::measuredSequence();
   std::vector<cv::Mat> images;
   for (std::size_t i = 0; i < std::min<std::size_t>(100, sequence->size()); ++i) {
     images.push_back(sequence->image(sequence->size() - 1 - i));
   }
   for (auto _ : state) {
-    vins::FeatureTracker tracker = makeTracker(*sequence, {});
+    vins::feature_tracker::FeatureTracker tracker = makeTracker(*sequence, {});
     constexpr std::size_t kImages = 4000;
     double half_way = 0.0;
     for (std::size_t i = 0; i < kImages; ++i) {
@@ -190,8 +192,8 @@ void memoryOverALongRun(benchmark::State& state) {
 }
 
 void registerAll() {
-  const auto images =
-      static_cast<benchmark::IterationCount>(vins::testing::measuredSequence()->size());
+  const auto images = static_cast<benchmark::IterationCount>(
+      vins::feature_tracker::testing::measuredSequence()->size());
   const auto add = [images](const char* name, bool gyroscope, bool equalize) {
     benchmark::RegisterBenchmark(name, trackSequence, gyroscope, equalize)
         ->Iterations(images)

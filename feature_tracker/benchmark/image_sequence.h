@@ -15,7 +15,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/testing/shared_data.h"
 
-namespace vins::testing {
+namespace vins::feature_tracker::testing {
 
 /// Images of one camera with the gyroscope's samples, for measuring.
 class ImageSequence {
@@ -28,7 +28,9 @@ class ImageSequence {
   virtual std::vector<ImuSample> imu(Stamp after, Stamp up_to) const = 0;
   virtual Pose bodyToCamera() const = 0;
 
-  std::shared_ptr<const Camera> camera() const { return exampleCameras().front(); }
+  std::shared_ptr<const camera_model::Camera> camera() const {
+    return vins::camera_model::testing::exampleCameras().front();
+  }
 };
 
 /// EuRoC's cam0 and imu0 in the ASL layout.
@@ -113,11 +115,11 @@ class PlaneSequence : public ImageSequence {
 
 /// The real recording where it is there.
 inline std::unique_ptr<ImageSequence> measuredSequence() {
-  const std::string folder = sharedData("euroc_mh01_flight");
+  const std::string folder = vins::testing::sharedData("euroc_mh01_flight");
   if (std::ifstream(folder + "/mav0/cam0/data.csv").good()) {
     return std::make_unique<EurocSequence>(folder);
   }
   return std::make_unique<PlaneSequence>();
 }
 
-}  // namespace vins::testing
+}  // namespace vins::feature_tracker::testing

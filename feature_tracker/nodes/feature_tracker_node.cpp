@@ -4,5 +4,6 @@
 #include "vins_msgs/node_main.h"
 
 int main(int argc, char** argv) {
-  return vins_msgs::runNode<vins::FeatureTrackerRos>(argc, argv, "feature_tracker");
+  return vins_msgs::runNode<vins::feature_tracker::FeatureTrackerRos>(argc, argv,
+                                                                      "feature_tracker");
 }

@@ -8,7 +8,7 @@
 #include "feature_tracker_ros.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// See FeatureTrackerRos for topics and parameters.
 class FeatureTrackerNodelet : public nodelet::Nodelet {
@@ -26,6 +26,6 @@ class FeatureTrackerNodelet : public nodelet::Nodelet {
   std::unique_ptr<FeatureTrackerRos> tracker_;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker
 
-PLUGINLIB_EXPORT_CLASS(vins::FeatureTrackerNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(vins::feature_tracker::FeatureTrackerNodelet, nodelet::Nodelet)

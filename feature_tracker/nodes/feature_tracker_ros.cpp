@@ -14,7 +14,7 @@
 #include "vins_msgs/conversions.h"
 #include "vins_msgs/node_configuration.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr int kImageQueue = 10;
@@ -240,4 +240,4 @@ void FeatureTrackerRos::summarize(const Health& health, int newly_dropped,
   }
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -16,7 +16,7 @@
 #include "input_queue.h"
 #include "rig_configuration.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// The feature tracker's ROS face, of node and nodelet alike.
 ///
@@ -87,4 +87,4 @@ class FeatureTrackerRos {
   std::thread worker_;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

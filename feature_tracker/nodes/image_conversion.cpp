@@ -8,7 +8,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
@@ -62,4 +62,4 @@ cv::Mat ImageConversion::toGrey(const sensor_msgs::CompressedImage& message) con
                    std::to_string(message.data.size()) + " bytes cannot be decoded");
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

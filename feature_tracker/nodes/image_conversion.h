@@ -4,7 +4,7 @@
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// Brings images of messages to the form that the feature tracker takes: CV_8UC1.
 class ImageConversion {
@@ -24,4 +24,4 @@ class ImageConversion {
   int used_bits_ = 8;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

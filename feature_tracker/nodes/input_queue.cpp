@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <utility>
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr std::size_t kMostImages = 10;
@@ -87,4 +87,4 @@ int InputQueue::dropped() const {
   return dropped_;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

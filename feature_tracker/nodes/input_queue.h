@@ -14,7 +14,7 @@
 #include "vins_core/imu.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// An image as it came; one of the two messages is set.
 struct QueuedImage {
@@ -61,4 +61,4 @@ class InputQueue {
   bool is_closed_ = false;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

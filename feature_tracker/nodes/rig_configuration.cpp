@@ -4,12 +4,13 @@
 
 #include "camera_model/camera_file.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
-std::shared_ptr<const Camera> cameraOf(const Parameters& parameters, const std::string& key) {
+std::shared_ptr<const camera_model::Camera> cameraOf(const Parameters& parameters,
+                                                     const std::string& key) {
   const std::filesystem::path folder = std::filesystem::path(parameters.name()).parent_path();
-  return readCameraFile((folder / parameters.text(key)).string());
+  return camera_model::readCameraFile((folder / parameters.text(key)).string());
 }
 
 Pose poseOf(const Parameters& parameters, const std::string& key) {
@@ -43,9 +44,9 @@ RigConfiguration readRigConfiguration(const Parameters& parameters) {
       parameters.text(parameters.has("image0_topic") ? "image0_topic" : "image_topic");
   rig.second_image_topic = parameters.textOr("image1_topic", "");
   rig.imu_topic = parameters.textOr("imu_topic", "");
-  rig.cameras.push_back(parameters.has("cam0_calib")
-                            ? cameraOf(parameters, "cam0_calib")
-                            : std::shared_ptr<const Camera>(readCamera(parameters)));
+  rig.cameras.push_back(parameters.has("cam0_calib") ? cameraOf(parameters, "cam0_calib")
+                                                     : std::shared_ptr<const camera_model::Camera>(
+                                                           camera_model::readCamera(parameters)));
   readFirstPose(parameters, &rig);
   if (!rig.second_image_topic.empty()) {
     rig.cameras.push_back(cameraOf(parameters, "cam1_calib"));
@@ -54,4 +55,4 @@ RigConfiguration readRigConfiguration(const Parameters& parameters) {
   return rig;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

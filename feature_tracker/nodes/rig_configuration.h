@@ -8,15 +8,15 @@
 #include "vins_core/parameters.h"
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// Cameras and topics of a configuration file, as far as the feature tracker needs them.
 struct RigConfiguration {
-  std::string image_topic;                             ///< image_topic, or image0_topic
-  std::string second_image_topic;                      ///< image1_topic; empty: one camera
-  std::string imu_topic;                               ///< imu_topic; empty: none
-  std::vector<std::shared_ptr<const Camera>> cameras;  ///< one or two
-  std::vector<Pose> T_bc;                              ///< of each; identity where not known
+  std::string image_topic;         ///< image_topic, or image0_topic
+  std::string second_image_topic;  ///< image1_topic; empty: one camera
+  std::string imu_topic;           ///< imu_topic; empty: none
+  std::vector<std::shared_ptr<const camera_model::Camera>> cameras;  ///< one or two
+  std::vector<Pose> T_bc;       ///< of each; identity where not known
   bool rotation_known = false;  ///< the gyroscope's turns can be carried over to the camera
 };
 
@@ -27,4 +27,4 @@ struct RigConfiguration {
 /// InputError naming file, key, what was found and what is allowed.
 RigConfiguration readRigConfiguration(const Parameters& parameters);
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr int kIterations = 6;
@@ -145,4 +145,4 @@ PatchAlignment AnchoredPatch::align(const cv::Mat& image, const cv::Point2f& sta
   return alignment;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -6,7 +6,7 @@
 
 #include <opencv2/core/hal/intrin.hpp>
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr int kBlock = 2;   // pixels between scores: finer, they say little more
@@ -85,7 +85,7 @@ bool byScore(const Corner& a, const Corner& b) { return a.score > b.score; }
 
 }  // namespace
 
-CornerGrid::Neighbourhood::Neighbourhood(ImageSize size, double min_distance)
+CornerGrid::Neighbourhood::Neighbourhood(camera_model::ImageSize size, double min_distance)
     : min_distance_(std::max(1.0, min_distance)),
       columns_(static_cast<int>(size.width / min_distance_) + 1),
       rows_(static_cast<int>(size.height / min_distance_) + 1),
@@ -119,7 +119,7 @@ bool CornerGrid::Neighbourhood::isFree(const cv::Point2f& pixel) const {
   return true;
 }
 
-CornerGrid::CornerGrid(ImageSize size, const CornerGridOptions& options, cv::Mat mask)
+CornerGrid::CornerGrid(camera_model::ImageSize size, const CornerGridOptions& options, cv::Mat mask)
     : size_(size),
       options_(options),
       mask_(std::move(mask)),
@@ -286,4 +286,4 @@ std::vector<Corner> CornerGrid::detect(const cv::Mat& gradients,
   return accepted;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -17,7 +17,7 @@
 #include "track_table.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr std::array<std::uint32_t, 2> kBaselines = {3, 9};  // images over which wanderers show
@@ -32,8 +32,8 @@ std::string sizeText(int width, int height) {
 }
 
 /// Why an image cannot be used by this camera; empty where it can.
-std::string faultOf(const cv::Mat& image, const Camera& camera) {
-  const ImageSize size = camera.imageSize();
+std::string faultOf(const cv::Mat& image, const camera_model::Camera& camera) {
+  const camera_model::ImageSize size = camera.imageSize();
   if (image.empty()) return "the image is empty";
   if (image.type() != CV_8UC1) {
     return "the image has " + std::to_string(image.channels()) + " channels of type " +
@@ -69,8 +69,8 @@ OutlierRejectionOptions rejectionOptions(const FeatureTrackerOptions& options) {
 
 class FeatureTracker::Impl {
  public:
-  Impl(std::vector<std::shared_ptr<const Camera>> cameras, const std::vector<Pose>& T_bc,
-       const FeatureTrackerOptions& options, const cv::Mat& mask)
+  Impl(std::vector<std::shared_ptr<const camera_model::Camera>> cameras,
+       const std::vector<Pose>& T_bc, const FeatureTrackerOptions& options, const cv::Mat& mask)
       : cameras_(std::move(cameras)),
         options_(options),
         clock_(options.max_gap, options.frequency),
@@ -110,7 +110,7 @@ class FeatureTracker::Impl {
     if (observer_) observer_(stage);
   }
 
-  std::vector<std::shared_ptr<const Camera>> cameras_;
+  std::vector<std::shared_ptr<const camera_model::Camera>> cameras_;
   FeatureTrackerOptions options_;
   FrameClock clock_;
   TurnPrediction turn_;
@@ -326,7 +326,7 @@ void FeatureTracker::Impl::reportHealth(Stamp stamp, FeatureTrackerResult* resul
   is_lost_ = is_lost;
 }
 
-FeatureTracker::FeatureTracker(std::vector<std::shared_ptr<const Camera>> cameras,
+FeatureTracker::FeatureTracker(std::vector<std::shared_ptr<const camera_model::Camera>> cameras,
                                std::vector<Pose> T_bc, const FeatureTrackerOptions& options,
                                cv::Mat mask) {
   options.validate();
@@ -335,7 +335,7 @@ FeatureTracker::FeatureTracker(std::vector<std::shared_ptr<const Camera>> camera
     throw InputError("feature tracker: " + std::to_string(count) + " cameras and " +
                      std::to_string(T_bc.size()) + " poses; allowed: 1 or 2, of each as many");
   }
-  const ImageSize size = cameras.front()->imageSize();
+  const camera_model::ImageSize size = cameras.front()->imageSize();
   const bool mask_fits = mask.empty() || (mask.type() == CV_8UC1 && mask.cols == size.width &&
                                           mask.rows == size.height);
   if (!mask_fits) {
@@ -360,4 +360,4 @@ void FeatureTracker::observeStages(std::function<void(TrackerStage)> observer) {
   impl_->observeStages(std::move(observer));
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -6,7 +6,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/tangent_basis.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 using Eigen::Quaterniond;
@@ -86,13 +86,14 @@ void TurnPrediction::reset() {
   last_rate_.setZero();
 }
 
-std::optional<Eigen::Vector2d> turnedPixel(const Camera& camera, const Vector3d& bearing,
-                                           const Quaterniond& R_ba) {
+std::optional<Eigen::Vector2d> turnedPixel(const camera_model::Camera& camera,
+                                           const Vector3d& bearing, const Quaterniond& R_ba) {
   return camera.project(R_ba * bearing);
 }
 
-std::optional<double> angularResolution(const Camera& camera, const Vector3d& bearing) {
-  ProjectionJacobians jacobians;
+std::optional<double> angularResolution(const camera_model::Camera& camera,
+                                        const Vector3d& bearing) {
+  camera_model::ProjectionJacobians jacobians;
   if (!camera.project(bearing, &jacobians)) return std::nullopt;
   const Eigen::Matrix2d J = jacobians.J_pixel_point * tangentBasis(bearing);
   const double area = std::abs(J.determinant());  // [px^2/rad^2]
@@ -100,4 +101,4 @@ std::optional<double> angularResolution(const Camera& camera, const Vector3d& be
   return 1.0 / std::sqrt(area);
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -1,6 +1,6 @@
 #include "feature_tracker/frame_clock.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 StampVerdict FrameClock::judge(Stamp stamp) const {
   // Negative stamps are refused before anything is subtracted: no difference can overflow.
@@ -28,4 +28,4 @@ bool FrameClock::advance(Stamp stamp) {
 
 void FrameClock::reset() { last_.reset(); }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr int kDull = 60;   // grey range below which CLAHE begins
@@ -40,4 +40,4 @@ bool ImageEqualizer::decide(const cv::Mat& image) {
   return active_;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

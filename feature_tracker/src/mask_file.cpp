@@ -4,9 +4,9 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
-cv::Mat readMaskFile(const std::string& path, ImageSize size) {
+cv::Mat readMaskFile(const std::string& path, camera_model::ImageSize size) {
   if (path.empty()) return {};
   const cv::Mat image = cv::imread(path, cv::IMREAD_GRAYSCALE);
   if (image.empty()) throw InputError("fisheye_mask: cannot read an image from '" + path + "'");
@@ -18,4 +18,4 @@ cv::Mat readMaskFile(const std::string& path, ImageSize size) {
   return image >= 128;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -8,7 +8,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/tangent_basis.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 using Eigen::Matrix3d;
@@ -154,4 +154,4 @@ void faceForward(const std::vector<BearingPair>& pairs, double threshold, Relati
   if (behind > ahead) motion->t_21 = -motion->t_21;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -5,7 +5,7 @@
 
 #include "feature_tracker/outlier_rejection.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// Distances of many pairs from their epipolar planes, for one motion after the other. Its single
 /// precision is good for a hundredth of a pixel.
@@ -48,4 +48,4 @@ Eigen::Quaterniond fitRotation(const std::vector<BearingPair>& pairs,
 /// Turns t_21 round where most of the pairs would else lie behind the camera.
 void faceForward(const std::vector<BearingPair>& pairs, double threshold, RelativeMotion* motion);
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

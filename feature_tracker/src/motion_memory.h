@@ -7,7 +7,7 @@
 
 #include "feature_tracker/feature_track.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// The camera's turns between the last images.
 class MotionMemory {
@@ -34,4 +34,4 @@ class MotionMemory {
   std::uint32_t image_ = kSize;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

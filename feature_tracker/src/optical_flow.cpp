@@ -5,7 +5,7 @@
 
 #include <opencv2/video/tracking.hpp>
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 // Mean squared gradient in the weakest direction below which a patch cannot be followed, in the
@@ -112,4 +112,4 @@ double brightnessRatio(const ImagePyramid& from, const ImagePyramid& to,
   return ratios[ratios.size() / 2];
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -6,7 +6,7 @@
 
 #include "motion_fit.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 using Eigen::Quaterniond;
@@ -177,4 +177,4 @@ RejectionResult OutlierRejection::reject(const std::vector<BearingPair>& pairs,
   return by_gyroscope && by_gyroscope->inliers >= by_images.inliers ? *by_gyroscope : by_images;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

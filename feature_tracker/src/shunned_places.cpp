@@ -4,7 +4,7 @@
 
 #include "feature_tracker/feature_track.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 void ShunnedPlaces::nextImage(const Eigen::Quaterniond& R_21) {
   for (Place& place : places_) {
@@ -24,4 +24,4 @@ std::vector<cv::Point2f> ShunnedPlaces::pixels() const {
   return pixels;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -9,13 +9,14 @@
 
 #include "camera_model/camera.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// Places where a track has just failed: on a moving object, at the edge of something near, in a
 /// reflection. A new corner there would fail as well, so they are left alone for some images.
 class ShunnedPlaces {
  public:
-  explicit ShunnedPlaces(std::shared_ptr<const Camera> camera) : camera_(std::move(camera)) {}
+  explicit ShunnedPlaces(std::shared_ptr<const camera_model::Camera> camera)
+      : camera_(std::move(camera)) {}
 
   /// Adds a place for the next `images` images.
   void add(const Eigen::Vector3d& bearing, int images) { places_.push_back({bearing, images}); }
@@ -34,8 +35,8 @@ class ShunnedPlaces {
     int images_left = 0;
   };
 
-  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const camera_model::Camera> camera_;
   std::vector<Place> places_;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -7,12 +7,12 @@
 #include "feature_tracker/flow_prediction.h"
 #include "feature_tracker/outlier_rejection.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-StereoMatcher::StereoMatcher(std::shared_ptr<const Camera> second, const Pose& T_10,
+StereoMatcher::StereoMatcher(std::shared_ptr<const camera_model::Camera> second, const Pose& T_10,
                              double threshold, const OpticalFlowOptions& options)
     : camera_(std::move(second)), T_10_(T_10), threshold_(threshold), flow_(options) {}
 
@@ -85,4 +85,4 @@ int StereoMatcher::match(const ImagePyramid& first, const ImagePyramid& second, 
   return count;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -5,7 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr int kShift = 3;               // drawing functions take eighths of a pixel
@@ -28,8 +28,8 @@ cv::Scalar colourOf(double age) {
   return {channel(2.0 / 3.0), channel(1.0 / 3.0), channel(0.0)};
 }
 
-void drawTail(const FeatureObservation& observation, const Camera& camera, double seconds,
-              const cv::Scalar& colour, cv::Mat* picture) {
+void drawTail(const FeatureObservation& observation, const camera_model::Camera& camera,
+              double seconds, const cv::Scalar& colour, cv::Mat* picture) {
   if (!observation.hasVelocity()) return;
   const auto from = camera.project(observation.bearing - seconds * observation.bearing_velocity);
   if (!from || (*from - observation.pixel).norm() > kLongestTail) return;
@@ -38,8 +38,9 @@ void drawTail(const FeatureObservation& observation, const Camera& camera, doubl
 
 }  // namespace
 
-cv::Mat drawTracks(const cv::Mat& image, const FeatureFrame& frame, const Camera& camera,
-                   int camera_index, const TrackDrawingOptions& options) {
+cv::Mat drawTracks(const cv::Mat& image, const FeatureFrame& frame,
+                   const camera_model::Camera& camera, int camera_index,
+                   const TrackDrawingOptions& options) {
   cv::Mat picture;
   if (image.channels() == 1) {
     cv::cvtColor(image, picture, cv::COLOR_GRAY2BGR);
@@ -57,4 +58,4 @@ cv::Mat drawTracks(const cv::Mat& image, const FeatureFrame& frame, const Camera
   return picture;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -4,7 +4,7 @@
 
 #include "feature_tracker/flow_prediction.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr double kSameLook = 0.8;           // correlation with the patch as it was at first
@@ -164,4 +164,4 @@ void TrackTable::observe(std::vector<FeatureObservation>* observations) const {
   }
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

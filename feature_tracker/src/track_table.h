@@ -10,12 +10,13 @@
 #include "feature_tracker/outlier_rejection.h"
 #include "vins_core/feature_frame.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// The tracks of the first camera, oldest first, and what is done to all of them at once.
 class TrackTable {
  public:
-  explicit TrackTable(std::shared_ptr<const Camera> camera) : camera_(std::move(camera)) {}
+  explicit TrackTable(std::shared_ptr<const camera_model::Camera> camera)
+      : camera_(std::move(camera)) {}
 
   std::vector<FeatureTrack>& tracks() { return tracks_; }
   const std::vector<FeatureTrack>& tracks() const { return tracks_; }
@@ -67,9 +68,9 @@ class TrackTable {
   bool move(FeatureTrack* track, const cv::Point2f& pixel, const Eigen::Quaterniond& R_21,
             double interval) const;
 
-  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const camera_model::Camera> camera_;
   std::vector<FeatureTrack> tracks_;
   std::int64_t next_id_ = 0;  ///< never goes back, so that no id is used twice
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -5,7 +5,7 @@
 #include "vins_core/folder.h"
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr Range kMaxFeatures{1, 5000};
@@ -89,4 +89,4 @@ FeatureTrackerOptions readFeatureTrackerOptions(const Parameters& parameters) {
   return options;
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -7,7 +7,7 @@
 #include "plane_world.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 using testing::PlaneWorld;
@@ -19,7 +19,7 @@ ImagePyramid pyramidOf(const cv::Mat& image) {
 }
 
 TEST(AnchoredPatch, FindsTheTurnedAndGrownPatchToATwentiethOfAPixel) {
-  const PlaneWorld world(testing::exampleCameras().front());
+  const PlaneWorld world(vins::camera_model::testing::exampleCameras().front());
   const Pose before;
   const Pose after(so3::exp({0.01, -0.02, 0.1}), {0.02, 0.01, 0.4});
   const ImagePyramid first = pyramidOf(world.render(before));
@@ -46,7 +46,7 @@ TEST(AnchoredPatch, FindsTheTurnedAndGrownPatchToATwentiethOfAPixel) {
 }
 
 TEST(AnchoredPatch, DoesNotMindBrightness) {
-  const PlaneWorld world(testing::exampleCameras().front());
+  const PlaneWorld world(vins::camera_model::testing::exampleCameras().front());
   const cv::Mat image = world.render(Pose());
   cv::Mat darker;
   image.convertTo(darker, CV_8U, 0.6, 20.0);
@@ -59,7 +59,7 @@ TEST(AnchoredPatch, DoesNotMindBrightness) {
 }
 
 TEST(AnchoredPatch, KnowsWhatLooksOtherwise) {
-  const PlaneWorld world(testing::exampleCameras().front());
+  const PlaneWorld world(vins::camera_model::testing::exampleCameras().front());
   const ImagePyramid pyramid = pyramidOf(world.render(Pose()));
   AnchoredPatch patch;
   patch.anchor(pyramid.image(), {300.0F, 200.0F});
@@ -77,4 +77,4 @@ TEST(AnchoredPatch, SurvivesFlatImagesAndPlacesOutside) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

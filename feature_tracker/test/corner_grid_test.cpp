@@ -8,14 +8,16 @@
 #include "feature_tracker/optical_flow.h"
 #include "plane_world.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
-constexpr ImageSize kSize{752, 480};
+constexpr camera_model::ImageSize kSize{752, 480};
 
 ImagePyramid texturedPyramid() {
   ImagePyramid pyramid;
-  pyramid.build(testing::PlaneWorld(testing::exampleCameras().front()).render(Pose()), {});
+  pyramid.build(
+      testing::PlaneWorld(vins::camera_model::testing::exampleCameras().front()).render(Pose()),
+      {});
   return pyramid;
 }
 
@@ -115,4 +117,4 @@ TEST(CornerGrid, FindsNothingWhereThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -10,7 +10,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 constexpr Stamp kPeriod = 50'000'000;
@@ -24,7 +24,7 @@ Pose swayingPose(int i) {
 /// Images of a swaying camera, rendered once for all tests.
 const std::vector<cv::Mat>& swayingImages() {
   static const std::vector<cv::Mat> images = [] {
-    const testing::PlaneWorld world(testing::exampleCameras().front());
+    const testing::PlaneWorld world(vins::camera_model::testing::exampleCameras().front());
     std::vector<cv::Mat> rendered;
     for (int i = 0; i < 30; ++i) rendered.push_back(world.render(swayingPose(i)));
     return rendered;
@@ -33,7 +33,8 @@ const std::vector<cv::Mat>& swayingImages() {
 }
 
 FeatureTracker makeTracker(const FeatureTrackerOptions& options = {}, const cv::Mat& mask = {}) {
-  return FeatureTracker({testing::exampleCameras().front()}, {Pose()}, options, mask);
+  return FeatureTracker({vins::camera_model::testing::exampleCameras().front()}, {Pose()}, options,
+                        mask);
 }
 
 FeatureTrackerResult step(FeatureTracker* tracker, int i) {
@@ -48,7 +49,7 @@ bool hasEvent(const FeatureTrackerResult& result, const std::string& code) {
 }
 
 TEST(FeatureTracker, FollowsTheTruthAndFillsEveryField) {
-  const testing::PlaneWorld world(testing::exampleCameras().front());
+  const testing::PlaneWorld world(vins::camera_model::testing::exampleCameras().front());
   FeatureTracker tracker = makeTracker();
   std::map<std::int64_t, Eigen::Vector3d> points, bearings;
   for (int i = 0; i < 30; ++i) {
@@ -244,11 +245,11 @@ TEST(FeatureTracker, NeverCrashesOnFuzz) {
 }
 
 TEST(FeatureTracker, RefusesWhatItCannotBeMadeFrom) {
-  const auto camera = testing::exampleCameras().front();
+  const auto camera = vins::camera_model::testing::exampleCameras().front();
   EXPECT_THROW(FeatureTracker({}, {}, {}), InputError);
   EXPECT_THROW(FeatureTracker({camera}, {}, {}), InputError);
   EXPECT_THROW(FeatureTracker({camera}, {Pose()}, {}, cv::Mat::zeros(9, 9, CV_8U)), InputError);
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

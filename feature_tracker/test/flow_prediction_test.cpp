@@ -5,7 +5,7 @@
 #include "camera_model/testing/example_cameras.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 using Eigen::Vector3d;
@@ -35,7 +35,7 @@ TEST(IntegrateGyroscope, NeedsSamplesThatCoverTheTime) {
 }
 
 TEST(TurnPrediction, GivesTheProjectionOfPureRotation) {
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const Eigen::Quaterniond R_bc = so3::exp({0.4, -1.0, 0.7});
     const Vector3d rate(0.5, -0.8, 1.5);
     TurnPrediction prediction(R_bc);
@@ -62,7 +62,7 @@ TEST(TurnPrediction, GoesOnAsBeforeWithoutSamples) {
 }
 
 TEST(AngularResolution, IsTheAngleBetweenNeighbouringPixels) {
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const Eigen::Vector2d pixel(0.5 * camera->imageSize().width + 60.0,
                                 0.5 * camera->imageSize().height - 40.0);
     const Vector3d here = *camera->unproject(pixel);
@@ -74,4 +74,4 @@ TEST(AngularResolution, IsTheAngleBetweenNeighbouringPixels) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

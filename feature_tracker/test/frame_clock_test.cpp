@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 TEST(FrameClock, JudgesStamps) {
@@ -37,4 +37,4 @@ TEST(FrameClock, KeepsTheRate) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -6,7 +6,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 sensor_msgs::Image messageOf(const cv::Mat& image, const std::string& encoding) {
@@ -63,4 +63,4 @@ TEST(ImageConversion, DecodesCompressedImages) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

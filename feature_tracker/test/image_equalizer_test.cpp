@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 cv::Mat rampOf(int range) {
@@ -30,4 +30,4 @@ TEST(ImageEqualizer, NeverActsWhereItIsOff) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -14,7 +14,7 @@
 #include "plane_world.h"
 #include "vins_msgs/conversions.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 /// Publishes images of a swaying camera, and hears what the node says.
@@ -79,7 +79,7 @@ class NodeTest : public ::testing::Test {
   std::vector<FeatureFrame> frames_;
   std::map<std::string, std::string> told_;
   int restart_count_ = 0;
-  testing::PlaneWorld world_{testing::exampleCameras().front()};
+  testing::PlaneWorld world_{vins::camera_model::testing::exampleCameras().front()};
 };
 
 TEST_F(NodeTest, DoesWhatItsTopicsPromise) {
@@ -121,7 +121,7 @@ TEST_F(NodeTest, DoesWhatItsTopicsPromise) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);

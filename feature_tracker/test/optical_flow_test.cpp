@@ -6,7 +6,7 @@
 #include "camera_model/testing/example_cameras.h"
 #include "plane_world.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 using testing::PlaneWorld;
@@ -32,7 +32,7 @@ std::vector<cv::Point2f> gridOfPoints() {
 }
 
 TEST(OpticalFlow, FindsPointsAgainEvenFromBadPredictions) {
-  const PlaneWorld world(testing::exampleCameras().front());
+  const PlaneWorld world(vins::camera_model::testing::exampleCameras().front());
   const Pose after(Eigen::Quaterniond::Identity(), {0.15, -0.05, 0.0});
   ImagePyramid first, second;
   const cv::Mat image = world.render(Pose());
@@ -60,7 +60,7 @@ TEST(OpticalFlow, FindsPointsAgainEvenFromBadPredictions) {
 }
 
 TEST(OpticalFlow, FindsNothingInTheDark) {
-  const PlaneWorld world(testing::exampleCameras().front());
+  const PlaneWorld world(vins::camera_model::testing::exampleCameras().front());
   ImagePyramid first, second;
   first.build(world.render(Pose()), {});
   second.build(cv::Mat::zeros(480, 752, CV_8U), {});
@@ -72,7 +72,7 @@ TEST(OpticalFlow, FindsNothingInTheDark) {
 }
 
 TEST(BrightnessRatio, IsTheGain) {
-  const PlaneWorld world(testing::exampleCameras().front());
+  const PlaneWorld world(vins::camera_model::testing::exampleCameras().front());
   const cv::Mat image = world.render(Pose());
   cv::Mat brighter;
   image.convertTo(brighter, CV_8U, 1.2);
@@ -85,4 +85,4 @@ TEST(BrightnessRatio, IsTheGain) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -6,7 +6,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 using Eigen::Quaterniond;
@@ -167,4 +167,4 @@ TEST(EpipolarDistance, IsThePixelsFromThePlane) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

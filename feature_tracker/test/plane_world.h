@@ -10,20 +10,20 @@
 #include "camera_model/camera.h"
 #include "vins_core/pose.h"
 
-namespace vins::testing {
+namespace vins::feature_tracker::testing {
 
 /// A plane with a texture of blobs of all sizes, z = `depth` in the world's frame, that repeats for
 /// ever. Says what a camera at any pose in front of it sees.
 class PlaneWorld {
  public:
-  explicit PlaneWorld(std::shared_ptr<const Camera> camera, double depth = 4.0)
+  explicit PlaneWorld(std::shared_ptr<const camera_model::Camera> camera, double depth = 4.0)
       : camera_(std::move(camera)), depth_(depth), texture_(paint()) {}
 
-  const Camera& camera() const { return *camera_; }
+  const camera_model::Camera& camera() const { return *camera_; }
 
   /// Image (CV_8UC1) of a camera at T_wc. Black where it does not see the plane.
   cv::Mat render(const Pose& T_wc) const {
-    const ImageSize size = camera_->imageSize();
+    const camera_model::ImageSize size = camera_->imageSize();
     cv::Mat1f x(size.height, size.width), y(size.height, size.width);
     for (int v = 0; v < size.height; ++v) {
       for (int u = 0; u < size.width; ++u) {
@@ -78,9 +78,9 @@ class PlaneWorld {
     return texture;
   }
 
-  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const camera_model::Camera> camera_;
   double depth_;
   cv::Mat texture_;
 };
 
-}  // namespace vins::testing
+}  // namespace vins::feature_tracker::testing

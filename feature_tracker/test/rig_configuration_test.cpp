@@ -4,7 +4,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 const char kCamera[] = R"(%YAML:1.0
@@ -48,4 +48,4 @@ TEST(RigConfiguration, NeedsTheSecondCamerasCalibration) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

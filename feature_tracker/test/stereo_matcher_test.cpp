@@ -7,11 +7,11 @@
 #include "plane_world.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 TEST(StereoMatcher, SeesTheSamePointsByBothCameras) {
-  const auto camera = testing::exampleCameras().front();
+  const auto camera = vins::camera_model::testing::exampleCameras().front();
   const testing::PlaneWorld world(camera, 3.0);
   const Pose T_b0, T_b1(so3::exp({0.01, 0.02, -0.01}), {0.11, 0.002, -0.001});
   FeatureTracker tracker({camera, camera}, {T_b0, T_b1}, {});
@@ -35,7 +35,7 @@ TEST(StereoMatcher, SeesTheSamePointsByBothCameras) {
 }
 
 TEST(StereoMatcher, GoesOnWithOneEye) {
-  const auto camera = testing::exampleCameras().front();
+  const auto camera = vins::camera_model::testing::exampleCameras().front();
   const testing::PlaneWorld world(camera, 3.0);
   FeatureTracker tracker({camera, camera}, {Pose(), Pose({1, 0, 0, 0}, {0.1, 0, 0})}, {});
   const cv::Mat image = world.render(Pose());
@@ -48,4 +48,4 @@ TEST(StereoMatcher, GoesOnWithOneEye) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -4,11 +4,11 @@
 
 #include "camera_model/testing/example_cameras.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 TEST(TrackDrawing, ColoursTracksByAge) {
-  const auto camera = testing::exampleCameras().front();
+  const auto camera = vins::camera_model::testing::exampleCameras().front();
   FeatureFrame frame;
   for (const int length : {1, 100}) {
     FeatureObservation observation;
@@ -27,4 +27,4 @@ TEST(TrackDrawing, ColoursTracksByAge) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

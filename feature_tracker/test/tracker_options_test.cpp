@@ -7,7 +7,7 @@
 #include "feature_tracker/mask_file.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 namespace {
 
 FeatureTrackerOptions optionsOf(const std::string& text) {
@@ -62,4 +62,4 @@ TEST(MaskFile, NamesTheFileThatIsMissing) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -29,7 +29,7 @@ struct Costs {
   int keyframes = 0, optimizations = 0;
   double query = 0.0, verify = 0.0, add = 0.0, optimize = 0.0, worst_optimize = 0.0;  // [s]
 
-  void take(const vins::PoseGraphResult& result, double seconds) {
+  void take(const vins::pose_graph::PoseGraphResult& result, double seconds) {
     ++keyframes;
     query += result.search.query_seconds;
     verify += result.search.verify_seconds;
@@ -44,16 +44,17 @@ struct Costs {
 struct Study {
   double seconds = 3600.0, row = 60.0;
   std::string csv, map_file;
-  vins::PoseGraphOptions options;
-  vins::simulation::TownWalkOptions walk;
+  vins::pose_graph::PoseGraphOptions options;
+  vins::pose_graph::TownWalkOptions walk;
 };
 
 /// Root mean square distance of the map's keyframes from where they truly were [m].
-double errorOf(vins::PoseGraph* graph, const std::map<std::int64_t, Eigen::Vector3d>& truth) {
+double errorOf(vins::pose_graph::PoseGraph* graph,
+               const std::map<std::int64_t, Eigen::Vector3d>& truth) {
   double sum = 0.0;
   std::size_t count = 0;
-  for (const vins::SequencePath& path : graph->paths()) {
-    for (const vins::KeyframeVertex& keyframe : path.keyframes) {
+  for (const vins::pose_graph::SequencePath& path : graph->paths()) {
+    for (const vins::pose_graph::KeyframeVertex& keyframe : path.keyframes) {
       sum += (keyframe.T_mb.position - truth.at(keyframe.id)).squaredNorm();
       ++count;
     }
@@ -61,9 +62,9 @@ double errorOf(vins::PoseGraph* graph, const std::map<std::int64_t, Eigen::Vecto
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, count)));
 }
 
-std::string rowOf(double time, const Study& study, const Costs& costs, vins::PoseGraph* graph,
-                  double error) {
-  const vins::PoseGraphStatistics statistics = graph->statistics();
+std::string rowOf(double time, const Study& study, const Costs& costs,
+                  vins::pose_graph::PoseGraph* graph, double error) {
+  const vins::pose_graph::PoseGraphStatistics statistics = graph->statistics();
   vins::WallClock clock;
   graph->save(study.map_file);
   const double save = clock.lap();
@@ -80,8 +81,9 @@ std::string rowOf(double time, const Study& study, const Costs& costs, vins::Pos
 }
 
 void walkAndMeasure(const Study& study) {
-  vins::simulation::TownWalk walk(study.walk);
-  vins::PoseGraph graph(study.options, vins::testing::exampleCameras().front(), walk.places());
+  vins::pose_graph::TownWalk walk(study.walk);
+  vins::pose_graph::PoseGraph graph(
+      study.options, vins::camera_model::testing::exampleCameras().front(), walk.places());
   const auto count = static_cast<std::size_t>(study.seconds / study.walk.period);
   const auto per_row = static_cast<std::size_t>(study.row / study.walk.period);
   auto bar = vins::ProgressBar::onStandardError("keyframes", count);
@@ -91,10 +93,10 @@ void walkAndMeasure(const Study& study) {
   Costs costs;
   std::map<std::int64_t, Eigen::Vector3d> truth;
   for (std::size_t i = 1; i <= count; ++i) {
-    vins::simulation::TownKeyframe next = walk.next();
+    vins::pose_graph::TownKeyframe next = walk.next();
     truth[next.keyframe.id] = next.truth.position;
     vins::WallClock clock;
-    const vins::PoseGraphResult result =
+    const vins::pose_graph::PoseGraphResult result =
         graph.addDescribed(next.keyframe, std::move(next.described));
     costs.take(result, clock.lap());
     bar.update(i, "");

@@ -18,38 +18,39 @@
 
 namespace {
 
-using vins::testing::texturedImage;
+using vins::pose_graph::testing::texturedImage;
 
 constexpr int kKeyframes = 2000;
 constexpr std::size_t kFeatures = 650;
 
 /// Descriptors of keyframe `index`: half of them those of keyframes nearby, half everybody's.
-std::vector<vins::BriefDescriptor> descriptorsOf(int index,
-                                                 const std::vector<vins::BriefDescriptor>& themes) {
+std::vector<vins::pose_graph::BriefDescriptor> descriptorsOf(
+    int index, const std::vector<vins::pose_graph::BriefDescriptor>& themes) {
   std::mt19937_64 random(static_cast<std::uint64_t>(index));
-  std::vector<vins::BriefDescriptor> descriptors;
+  std::vector<vins::pose_graph::BriefDescriptor> descriptors;
   for (std::size_t i = 0; i < kFeatures; ++i) {
     const std::size_t theme = i % 2 == 0
                                   ? random() % 1000
                                   : 1000 + (40 * static_cast<std::size_t>(index) + random() % 400) %
                                                (themes.size() - 1000);
-    descriptors.push_back(vins::testing::withNoise(themes[theme], 15, &random));
+    descriptors.push_back(vins::pose_graph::testing::withNoise(themes[theme], 15, &random));
   }
   return descriptors;
 }
 
 /// A vocabulary of ten thousand words, and the themes it was trained on.
 struct World {
-  std::vector<vins::BriefDescriptor> themes = vins::testing::randomDescriptors(20000, 1);
-  vins::Vocabulary vocabulary = train();
+  std::vector<vins::pose_graph::BriefDescriptor> themes =
+      vins::pose_graph::testing::randomDescriptors(20000, 1);
+  vins::pose_graph::Vocabulary vocabulary = train();
 
-  vins::Vocabulary train() const {
-    std::vector<std::vector<vins::BriefDescriptor>> images;
+  vins::pose_graph::Vocabulary train() const {
+    std::vector<std::vector<vins::pose_graph::BriefDescriptor>> images;
     for (int i = 0; i < 300; ++i) images.push_back(descriptorsOf(7 * i, themes));
-    vins::VocabularyTrainingOptions options;
+    vins::pose_graph::VocabularyTrainingOptions options;
     options.levels = 4;
     options.iterations = 3;
-    return vins::trainVocabulary(images, options);
+    return vins::pose_graph::trainVocabulary(images, options);
   }
 };
 
@@ -59,9 +60,9 @@ const World& world() {
 }
 
 void describeKeyframe(benchmark::State& state) {
-  const auto camera = vins::testing::exampleCameras().front();
-  const vins::ViewDescriber describer(*camera, world().vocabulary,
-                                      vins::BriefPattern::generate(1, 49), {});
+  const auto camera = vins::camera_model::testing::exampleCameras().front();
+  const vins::pose_graph::ViewDescriber describer(
+      *camera, world().vocabulary, vins::pose_graph::BriefPattern::generate(1, 49), {});
   const cv::Mat1b image = texturedImage(752, 480, 1);
   vins::Keyframe keyframe;
   for (int i = 0; i < 150; ++i) {
@@ -73,7 +74,7 @@ void describeKeyframe(benchmark::State& state) {
 }
 
 void queryDatabase(benchmark::State& state) {
-  vins::LoopDetector detector(world().vocabulary.wordCount(), {});
+  vins::pose_graph::LoopDetector detector(world().vocabulary.wordCount(), {});
   for (int i = 0; i < kKeyframes; ++i) {
     detector.add(i, world().vocabulary.describe(descriptorsOf(i, world().themes), 0).bag);
   }
@@ -91,11 +92,11 @@ void queryDatabase(benchmark::State& state) {
 }
 
 void verifyLoop(benchmark::State& state) {
-  vins::testing::LoopScene scene;
+  vins::pose_graph::testing::LoopScene scene;
   scene.good = 60;
   scene.wrong = static_cast<int>(state.range(0));
   const auto views = scene.views();
-  const vins::LoopVerifier verifier({});
+  const vins::pose_graph::LoopVerifier verifier({});
   for (auto _ : state) benchmark::DoNotOptimize(verifier.verify(views.query, views.old));
 }
 

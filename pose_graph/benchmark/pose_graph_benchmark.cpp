@@ -10,9 +10,9 @@
 namespace {
 
 /// Rounds of 100 keyframes; each tenth one, from the second round on, closes a loop.
-vins::KeyframeGraph makeGraph(int keyframes, int loops) {
-  const vins::testing::SyntheticKeyframes run(keyframes, 100, 0.01, 1);
-  vins::KeyframeGraph graph;
+vins::pose_graph::KeyframeGraph makeGraph(int keyframes, int loops) {
+  const vins::pose_graph::testing::SyntheticKeyframes run(keyframes, 100, 0.01, 1);
+  vins::pose_graph::KeyframeGraph graph;
   run.addTo(&graph);
   const auto count = static_cast<std::size_t>(loops);
   const std::size_t span = static_cast<std::size_t>(keyframes) - 100;
@@ -25,36 +25,36 @@ vins::KeyframeGraph makeGraph(int keyframes, int loops) {
 
 /// From the drifted odometry: the worst case, when all loops come at once.
 void fourDofFromOdometry(benchmark::State& state) {
-  const vins::KeyframeGraph graph = makeGraph(2000, 200);
-  vins::FourDofResult result;
-  for (auto _ : state) result = vins::optimizeFourDof(graph, {});
+  const vins::pose_graph::KeyframeGraph graph = makeGraph(2000, 200);
+  vins::pose_graph::FourDofResult result;
+  for (auto _ : state) result = vins::pose_graph::optimizeFourDof(graph, {});
   state.counters["iterations"] = result.summary.iterations;
   state.counters["cost"] = result.summary.final_cost;
 }
 
 /// The usual case: all but the last loop have been optimized.
 void fourDofAfterOneLoop(benchmark::State& state) {
-  vins::KeyframeGraph graph = makeGraph(2000, 199);
-  graph.apply(vins::optimizeFourDof(graph, {}).correction);
+  vins::pose_graph::KeyframeGraph graph = makeGraph(2000, 199);
+  graph.apply(vins::pose_graph::optimizeFourDof(graph, {}).correction);
   vins::LoopEdge loop = graph.loops().back();
   loop.query_id = 1999;
   loop.T_old_query =
       graph.vertices().at(loop.old_id).T_mb.inverse() * graph.vertices().at(1999).T_mb;
   loop.T_old_query.position.x() += 0.2;
   graph.addLoopEdge(loop);
-  vins::FourDofResult result;
-  for (auto _ : state) result = vins::optimizeFourDof(graph, {});
+  vins::pose_graph::FourDofResult result;
+  for (auto _ : state) result = vins::pose_graph::optimizeFourDof(graph, {});
   state.counters["iterations"] = result.summary.iterations;
 }
 
 void snapshot(benchmark::State& state) {
-  const vins::KeyframeGraph graph = makeGraph(2000, 200);
-  for (auto _ : state) benchmark::DoNotOptimize(vins::KeyframeGraph(graph));
+  const vins::pose_graph::KeyframeGraph graph = makeGraph(2000, 200);
+  for (auto _ : state) benchmark::DoNotOptimize(vins::pose_graph::KeyframeGraph(graph));
 }
 
 void thinning(benchmark::State& state) {
-  const vins::KeyframeGraph graph = makeGraph(2001, 200);
-  for (auto _ : state) benchmark::DoNotOptimize(vins::redundantKeyframes(graph, {}));
+  const vins::pose_graph::KeyframeGraph graph = makeGraph(2001, 200);
+  for (auto _ : state) benchmark::DoNotOptimize(vins::pose_graph::redundantKeyframes(graph, {}));
 }
 
 BENCHMARK(fourDofFromOdometry)->Unit(benchmark::kMillisecond);

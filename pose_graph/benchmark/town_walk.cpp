@@ -8,7 +8,7 @@
 #include "vins_core/heading.h"
 #include "vins_core/so3.h"
 
-namespace vins::simulation {
+namespace vins::pose_graph {
 namespace {
 
 constexpr double kPixelAngle = 1.0 / 460.0;  // [rad]
@@ -142,4 +142,4 @@ TownKeyframe TownWalk::next() {
   return result;
 }
 
-}  // namespace vins::simulation
+}  // namespace vins::pose_graph

@@ -8,7 +8,7 @@
 #include "pose_graph/place/place_model.h"
 #include "vins_core/keyframe.h"
 
-namespace vins::simulation {
+namespace vins::pose_graph {
 
 /// What a walk through the town is like.
 struct TownWalkOptions {
@@ -66,4 +66,4 @@ class TownWalk {
   std::int64_t next_id_ = 0;
 };
 
-}  // namespace vins::simulation
+}  // namespace vins::pose_graph

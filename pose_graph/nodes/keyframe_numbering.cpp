@@ -1,6 +1,6 @@
 #include "keyframe_numbering.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 bool KeyframeNumbering::take(Keyframe* keyframe) {
   const bool is_new_run = last_id_ && keyframe->id <= *last_id_;
@@ -25,4 +25,4 @@ void KeyframeNumbering::giveBack(LoopMatch* match) const {
   match->query_id = ids_.original(match->query_id);
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 #include "vins_core/keyframe.h"
 #include "vins_core/loop_match.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Keyframes of an estimator that may have been started again: it counts keyframes and sequences
 /// from 0 anew, which in the graph are others. Old ids of loops are the graph's own everywhere.
@@ -29,4 +29,4 @@ class KeyframeNumbering {
   ContinuedIds sequences_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace vins {
+namespace vins::pose_graph {
 
 using Response = vins_msgs::MapFile::Response;
 
@@ -37,4 +37,4 @@ bool MapServices::serve(bool saves, const vins_msgs::MapFile::Request& request,
   return true;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

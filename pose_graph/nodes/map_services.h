@@ -10,7 +10,7 @@
 
 #include "vins_msgs/MapFile.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What a map service was asked for, and where its answer goes: one that is thrown away unanswered
 /// is told to the caller as such.
@@ -38,4 +38,4 @@ class MapServices {
   ros::AsyncSpinner spinner_;  ///< last: it works on the others
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

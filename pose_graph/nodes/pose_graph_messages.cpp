@@ -4,7 +4,7 @@
 
 #include "vins_msgs/conversions.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 geometry_msgs::PoseStamped stamped(Stamp stamp, const Pose& pose, const std::string& frame) {
@@ -78,4 +78,4 @@ visualization_msgs::MarkerArray toMarkers(const std::vector<SequencePath>& paths
   return markers;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

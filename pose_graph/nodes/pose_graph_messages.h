@@ -8,7 +8,7 @@
 
 #include "pose_graph/pose_graph.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Keyframes of a sequence in the map.
 nav_msgs::Path toPath(const SequencePath& path, const std::string& map_frame);
@@ -22,4 +22,4 @@ visualization_msgs::MarkerArray toMarkers(const std::vector<SequencePath>& paths
                                           const std::vector<LoopEdge>& loops,
                                           const std::string& map_frame);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

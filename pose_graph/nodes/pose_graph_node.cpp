@@ -4,6 +4,6 @@
 #include "vins_msgs/node_main.h"
 
 int main(int argc, char** argv) {
-  return vins_msgs::runNode<vins::PoseGraphRos>(argc, argv, "pose_graph",
-                                                [](vins::PoseGraphRos& graph) { graph.finish(); });
+  return vins_msgs::runNode<vins::pose_graph::PoseGraphRos>(
+      argc, argv, "pose_graph", [](vins::pose_graph::PoseGraphRos& graph) { graph.finish(); });
 }

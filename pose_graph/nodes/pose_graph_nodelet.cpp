@@ -7,7 +7,7 @@
 #include "pose_graph_ros.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// The pose graph in a nodelet manager.
 class PoseGraphNodelet : public nodelet::Nodelet {
@@ -33,6 +33,6 @@ class PoseGraphNodelet : public nodelet::Nodelet {
   std::unique_ptr<PoseGraphRos> graph_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph
 
-PLUGINLIB_EXPORT_CLASS(vins::PoseGraphNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(vins::pose_graph::PoseGraphNodelet, nodelet::Nodelet)

@@ -11,7 +11,7 @@
 #include "vins_msgs/LoopMatch.h"
 #include "vins_msgs/conversions.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr double kPathPeriod = 0.5;  // [s]
@@ -110,4 +110,4 @@ void PoseGraphPublisher::publishPicture(Stamp stamp, const cv::Mat& picture) {
   picture_.publish(cv_bridge::CvImage(header, "bgr8", picture).toImageMsg());
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

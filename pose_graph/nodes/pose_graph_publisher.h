@@ -10,7 +10,7 @@
 
 #include "pose_graph/pose_graph.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Frame names of what is published.
 struct PoseGraphFrames {
@@ -55,4 +55,4 @@ class PoseGraphPublisher {
   tf2_ros::TransformBroadcaster transforms_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -11,7 +11,7 @@
 #include "vins_msgs/conversions.h"
 #include "vins_msgs/node_configuration.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 400;   // several seconds of keyframes and odometries
@@ -29,7 +29,7 @@ std::unique_ptr<PoseGraph> makeGraph(const Parameters& parameters,
                                      const PoseGraphConfiguration& configuration) {
   const std::string shipped = ros::package::getPath("pose_graph") + "/support_files";
   ROS_INFO_STREAM("pose graph options:\n" << configuration.options);
-  return std::make_unique<PoseGraph>(configuration.options, readCamera(parameters),
+  return std::make_unique<PoseGraph>(configuration.options, camera_model::readCamera(parameters),
                                      readPlaceModel(configuration.files, shipped));
 }
 
@@ -299,4 +299,4 @@ void PoseGraphRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   for (const Event& event : recent_) status.add("event " + event.code, event.text);
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -25,7 +25,7 @@
 #include "vins_msgs/KeyframePoseUpdate.h"
 #include "vins_msgs/LoopEdge.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// The pose graph's ROS face, shared by node and nodelet. Callbacks only queue; one worker
 /// describes and compares, and the optimization has a thread of its own.
@@ -98,4 +98,4 @@ class PoseGraphRos {
   std::unique_ptr<MapServices> services_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

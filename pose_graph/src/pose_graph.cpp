@@ -10,7 +10,7 @@
 #include "vins_core/heading.h"
 #include "vins_core/wall_clock.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -60,8 +60,8 @@ std::size_t graphMemory(const KeyframeGraph& graph) {
 
 }  // namespace
 
-PoseGraph::PoseGraph(const PoseGraphOptions& options, std::shared_ptr<const Camera> camera,
-                     const PlaceModel& places)
+PoseGraph::PoseGraph(const PoseGraphOptions& options,
+                     std::shared_ptr<const camera_model::Camera> camera, const PlaceModel& places)
     : options_(options),
       finder_(std::move(camera), places, options.loops),
       graph_(KeyframeGraph(options.graph)),
@@ -321,4 +321,4 @@ cv::Mat PoseGraph::draw(const CheckedCandidate& checked, const cv::Mat& query_im
   return drawMatches(query_image, old_image, *query, *old, checked.verification, checked.score);
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

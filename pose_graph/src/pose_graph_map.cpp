@@ -8,7 +8,7 @@
 #include "pose_graph/pose_graph.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 /// Keyframes and sequences counted from 0 on, in their order, as a file has them.
@@ -141,4 +141,4 @@ LoadedMap PoseGraph::load(const std::string& path, PictureStore* pictures) {
   return loaded;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 #include "vins_core/folder.h"
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr Range kDistance{0.0, 100.0};
@@ -81,4 +81,4 @@ PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters) 
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

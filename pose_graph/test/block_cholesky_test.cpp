@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::MatrixXd;
@@ -81,4 +81,4 @@ TYPED_TEST(BlockCholeskyTest, SaysWhereAPivotIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::MatrixXd;
@@ -92,4 +92,4 @@ TYPED_TEST(BlockNormalEquationsTest, SaysWhereThereIsNoFactor) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -10,7 +10,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/text_file.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::texturedImage;
@@ -160,4 +160,4 @@ TEST(Brief, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 
 #include "random_descriptors.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::randomDescriptors;
@@ -47,4 +47,4 @@ TEST(NearestDescriptor, SaysWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

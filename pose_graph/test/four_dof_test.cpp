@@ -11,7 +11,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/testing/numeric_jacobian.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Block = FourDofModel::Block;
@@ -50,8 +50,8 @@ TEST_F(FourDofModelTest, JacobiansAgreeWithNumericDifferences) {
       return e;
     };
     // Differences of errors of size 10: rounding 1e-15 * 10 / 1e-3, truncation 1e-12 * 10 / 30.
-    EXPECT_LT((J_a - testing::numericJacobian(by_a, 4)).norm(), 1e-10);
-    EXPECT_LT((J_b - testing::numericJacobian(by_b, 4)).norm(), 1e-10);
+    EXPECT_LT((J_a - vins::testing::numericJacobian(by_a, 4)).norm(), 1e-10);
+    EXPECT_LT((J_b - vins::testing::numericJacobian(by_b, 4)).norm(), 1e-10);
   }
 }
 
@@ -224,4 +224,4 @@ TEST(FourDof, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

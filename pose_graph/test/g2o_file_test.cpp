@@ -12,7 +12,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/testing/shared_data.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 G2oFile parse(const std::string& text) {
@@ -141,7 +141,7 @@ TEST(G2oFile, WritesAsideAndLeavesNoHalfFile) {
 
 /// Files as they are found in the wild, small enough for a test.
 TEST(G2oFile, PublishedGraphsReachTheirKnownCost) {
-  const std::string garage = testing::sharedData("g2o/parking-garage.g2o");
+  const std::string garage = vins::testing::sharedData("g2o/parking-garage.g2o");
   VINS_SKIP_WITHOUT(garage);
   G2oFile file = readG2oFile(garage);
   EXPECT_EQ(file.graph.poses.size(), 1661u);
@@ -156,4 +156,4 @@ TEST(G2oFile, PublishedGraphsReachTheirKnownCost) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -9,7 +9,7 @@
 #include "synthetic_keyframes.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::Vector3d;
@@ -317,4 +317,4 @@ TEST(KeyframeGraph, RefusesKeyframesThatMeanNothingAndStaysWhole) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 Keyframe keyframeOf(std::int64_t id, std::uint32_t sequence) {
@@ -61,4 +61,4 @@ TEST(KeyframeNumbering, WhatGoesToAndFroIsNumberedAlike) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

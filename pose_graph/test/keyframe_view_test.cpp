@@ -9,7 +9,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::texturedImage;
@@ -34,7 +34,8 @@ class KeyframeViewTest : public ::testing::Test {
     return keyframe;
   }
 
-  const std::shared_ptr<const Camera> camera_ = testing::exampleCameras().front();
+  const std::shared_ptr<const camera_model::Camera> camera_ =
+      vins::camera_model::testing::exampleCameras().front();
   const BriefPattern pattern_ = BriefPattern::generate(1, 49);
   const Vocabulary vocabulary_ = textureVocabulary(pattern_);
 };
@@ -102,7 +103,7 @@ TEST_F(KeyframeViewTest, RefusesImagesOfOtherSizes) {
 }
 
 TEST_F(KeyframeViewTest, ServesCamerasOfAnyKind) {
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const ViewDescriber describer(*camera, vocabulary_, pattern_, {});
     const auto size = camera->imageSize();
     const auto described = describer.describe({}, texturedImage(size.width, size.height, 1));
@@ -111,4 +112,4 @@ TEST_F(KeyframeViewTest, ServesCamerasOfAnyKind) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

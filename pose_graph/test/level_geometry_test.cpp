@@ -7,7 +7,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::Vector3d;
@@ -112,4 +112,4 @@ TEST_F(LevelGeometryTest, EpipolarErrorDoesNotKnowTheDirectionsSign) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -6,7 +6,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr std::size_t kPlaces = 100;
@@ -154,4 +154,4 @@ TEST_F(LoopDetectorTest, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -8,7 +8,7 @@
 #include "random_descriptors.h"
 #include "vins_core/so3.h"
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 /// A place seen twice: points about the origin of the world, an old keyframe, and a query's, each a
 /// rig with a camera that looks along its body's x axis.
@@ -108,4 +108,4 @@ struct LoopScene {
   }
 };
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

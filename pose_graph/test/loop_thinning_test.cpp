@@ -6,7 +6,7 @@
 
 #include "synthetic_keyframes.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 /// Allows ten loops.
@@ -81,4 +81,4 @@ TEST(LoopThinning, TakenOutOneByOneTheLoopsLieEvenly) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 #include "loop_scene.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::LoopScene;
@@ -183,4 +183,4 @@ TEST(LoopVerifier, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

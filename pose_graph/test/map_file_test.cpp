@@ -11,7 +11,7 @@
 #include "temp_folder.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::bytesOf;
@@ -280,4 +280,4 @@ TEST_F(MapFile, WhatCannotBeWrittenLeavesTheOldFile) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

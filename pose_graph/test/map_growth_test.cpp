@@ -10,7 +10,7 @@
 
 #include "temp_folder.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 int run(const std::string& arguments) {
@@ -76,4 +76,4 @@ TEST(MapGrowth, BadOptionsAreTold) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 
 #include "loop_scene.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 int countColour(const cv::Mat& picture, bool green) {
@@ -53,4 +53,4 @@ TEST(DrawMatches, ServesRejectedLoopsAndImagesOfTwoSizes) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -9,7 +9,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::MatrixXd;
@@ -147,4 +147,4 @@ TEST(Minimizer, OptionsOutOfRangeAreNamed) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

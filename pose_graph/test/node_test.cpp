@@ -30,7 +30,7 @@
 #include "vins_msgs/MapFile.h"
 #include "vins_msgs/conversions.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::Revisits;
@@ -253,7 +253,7 @@ TEST_F(NodeTest, SavesAndLoadsMaps) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);

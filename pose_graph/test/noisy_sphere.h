@@ -6,7 +6,7 @@
 #include "pose_graph/graph/relative_pose_graph.h"
 #include "vins_core/so3.h"
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 /// Rounds of a sphere one above the other, joined along each round and from each to the next; in a
 /// planar graph the rounds are circles around each other. Edges have noise of `noise` (position
@@ -41,4 +41,4 @@ inline RelativePoseGraph noisySphere(int rounds, int per_round, double noise, bo
   return graph;
 }
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

@@ -7,7 +7,7 @@
 #include "synthetic_keyframes.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::SyntheticKeyframes;
@@ -104,4 +104,4 @@ TEST(OdometryGateOptions, AreChecked) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

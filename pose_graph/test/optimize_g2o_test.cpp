@@ -15,7 +15,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 struct Outcome {
@@ -113,4 +113,4 @@ TEST_F(OptimizeG2o, TellsWhatIsWrongAndLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

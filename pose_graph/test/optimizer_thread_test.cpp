@@ -8,7 +8,7 @@
 #include "synthetic_keyframes.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::difference;
@@ -137,4 +137,4 @@ TEST(OptimizerThread, RefusesOptionsBeforeItStarts) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -4,7 +4,7 @@
 
 #include "textured_image.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 TEST(PictureStore, GivesBackAnImageInItsSize) {
@@ -43,4 +43,4 @@ TEST(PictureStore, TravelsThroughAFileUnchanged) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr std::size_t kWords = 500;
@@ -97,4 +97,4 @@ TEST(PlaceDatabase, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

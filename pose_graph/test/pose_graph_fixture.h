@@ -10,7 +10,7 @@
 #include "revisits.h"
 #include "view_fixture.h"
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 /// An odometry's world after some drift, seen from the truth.
 inline const Pose kDrift(yawRotation(0.03), {0.4, -0.3, 0.2});
@@ -60,4 +60,4 @@ class PoseGraphFixture : public ::testing::Test {
   std::int64_t next_id_ = 0;
 };
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

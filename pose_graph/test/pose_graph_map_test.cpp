@@ -8,7 +8,7 @@
 #include "temp_folder.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::difference;
@@ -243,4 +243,4 @@ TEST_F(PoseGraphMap, AMapLargerThanTheLimitIsThinned) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

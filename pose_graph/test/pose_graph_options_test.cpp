@@ -7,7 +7,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 PoseGraphConfiguration read(const std::string& text) {
@@ -97,4 +97,4 @@ TEST(PoseGraphOptions, PrintsWhatAUserMayWantToKnow) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -8,7 +8,7 @@
 #include "synthetic_keyframes.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::difference;
@@ -228,4 +228,4 @@ TEST_F(PoseGraphTest, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/testing/numeric_jacobian.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::Vector3d;
@@ -32,7 +32,7 @@ TEST(BearingError, HasTheRightJacobian) {
         kTruth * se3::exp((se3::Vector6d() << 0.1, 0.2, -0.1, 0.1, -0.1, 0.05).finished());
     Eigen::Matrix<double, 3, 6> J;
     bearingError(seen, T, &J);
-    const Eigen::MatrixXd numeric = testing::numericJacobian(
+    const Eigen::MatrixXd numeric = vins::testing::numericJacobian(
         [&](const Eigen::VectorXd& xi) -> Eigen::VectorXd {
           return bearingError(seen, T * se3::exp(se3::Vector6d(xi)));
         },
@@ -75,4 +75,4 @@ TEST(RefinePose, SaysWhereThePoseIsNotDetermined) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

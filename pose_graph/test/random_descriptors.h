@@ -5,7 +5,7 @@
 
 #include "pose_graph/place/descriptor.h"
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 inline BriefDescriptor randomDescriptor(std::mt19937_64* random) {
   BriefDescriptor descriptor;
@@ -29,4 +29,4 @@ inline BriefDescriptor withNoise(BriefDescriptor descriptor, int bits, std::mt19
   return descriptor;
 }
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

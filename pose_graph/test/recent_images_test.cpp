@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr Stamp kMs = 1'000'000;
@@ -36,4 +36,4 @@ TEST(RecentImages, ARestartedRecordingBeginsAnew) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

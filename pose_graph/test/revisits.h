@@ -14,7 +14,7 @@
 #include "vins_core/keyframe.h"
 #include "vins_core/so3.h"
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 /// A body that comes to a row of places, each of which looks different: keyframes and images as the
 /// estimator hands them on. The same place looks exactly the same whenever it is visited.
@@ -22,7 +22,8 @@ class Revisits {
  public:
   static constexpr Stamp kPeriod = 500'000'000;  ///< between keyframes [ns]
 
-  const std::shared_ptr<const Camera> camera = exampleCameras().front();
+  const std::shared_ptr<const camera_model::Camera> camera =
+      vins::camera_model::testing::exampleCameras().front();
 
   /// Where the body truly stands at a place: on a circle of 6 m, looking outwards.
   static Pose truth(int place) {
@@ -33,7 +34,7 @@ class Revisits {
   }
 
   cv::Mat image(int place) const {
-    const ImageSize size = camera->imageSize();
+    const camera_model::ImageSize size = camera->imageSize();
     return texturedImage(size.width, size.height, place);
   }
 
@@ -65,4 +66,4 @@ class Revisits {
   }
 };
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

@@ -11,7 +11,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/testing/numeric_jacobian.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::noisySphere;
@@ -42,8 +42,8 @@ void checkJacobians(const Pose& a, const Pose& b, const Pose& T_ij) {
   };
   // Errors of size 10: truncation of about 1e-12 times a fifth derivative of up to some hundreds,
   // rounding of 1e-14 / 1e-3.
-  EXPECT_LT((J_a - testing::numericJacobian(by_a, kDim)).norm(), 1e-9);
-  EXPECT_LT((J_b - testing::numericJacobian(by_b, kDim)).norm(), 1e-9);
+  EXPECT_LT((J_a - vins::testing::numericJacobian(by_a, kDim)).norm(), 1e-9);
+  EXPECT_LT((J_b - vins::testing::numericJacobian(by_b, kDim)).norm(), 1e-9);
 }
 
 TEST(RelativePoseModel, JacobiansAgreeWithNumericDifferences) {
@@ -88,7 +88,7 @@ TEST(RobustKernelTest, WeightIsTheDerivativeOfTheCost) {
         return Eigen::VectorXd::Constant(1, kernel.cost(s + d[0]));
       };
       // Truncation of 1e-12, rounding of 1e-14 / 1e-3.
-      EXPECT_NEAR(kernel.weight(s), testing::numericJacobian(f, 1)(0, 0), 1e-10) << s;
+      EXPECT_NEAR(kernel.weight(s), vins::testing::numericJacobian(f, 1)(0, 0), 1e-10) << s;
     }
   }
   EXPECT_THROW((RobustKernel{KernelType::kHuber, -1.0}.validate()), InputError);
@@ -259,4 +259,4 @@ TEST(SixDofInput, RefusesEdgesAndIdsThatMeanNothing) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 #include "textured_image.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::texturedImage;
@@ -60,4 +60,4 @@ TEST(SpreadCorners, RefuseBadInput) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -16,7 +16,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 const char* const kPattern = "../support_files/brief_pattern.yml";
@@ -66,4 +66,4 @@ TEST(SupportFiles, VocabularyTellsImagesApart) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -9,7 +9,7 @@
 #include "vins_core/pose.h"
 #include "vins_core/so3.h"
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 /// A body that flies round and round, with an odometry that drifts in position and yaw.
 struct SyntheticKeyframes {
@@ -99,4 +99,4 @@ inline KeyframeGraphOptions exactLoops() {
 /// Difference of two poses: position [m] and rotation [rad] together.
 inline double difference(const Pose& a, const Pose& b) { return se3::log(a.inverse() * b).norm(); }
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 /// A folder of this process and name, empty at first and gone in the end.
 class TempFolder {
@@ -44,4 +44,4 @@ inline void writeBytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 /// Rectangles upon rectangles, of 5 to 30 pixels, in random grey values: corners all over, no place
 /// like another.
@@ -20,4 +20,4 @@ inline cv::Mat1b texturedImage(int width, int height, int seed) {
   return image;
 }
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

@@ -9,7 +9,7 @@
 #include "synthetic_keyframes.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 ThinningOptions keepAtMost(int count, int newest = 0) {
@@ -141,4 +141,4 @@ TEST(Thinning, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

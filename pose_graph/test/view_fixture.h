@@ -4,7 +4,7 @@
 #include "pose_graph/place/vocabulary_training.h"
 #include "textured_image.h"
 
-namespace vins::testing {
+namespace vins::pose_graph::testing {
 
 /// A vocabulary of textured images, with as many words as tell one from the other: a few thousand.
 inline Vocabulary textureVocabulary(const BriefPattern& pattern) {
@@ -21,4 +21,4 @@ inline Vocabulary textureVocabulary(const BriefPattern& pattern) {
   return trainVocabulary(images, options);
 }
 
-}  // namespace vins::testing
+}  // namespace vins::pose_graph::testing

@@ -5,7 +5,7 @@
 #include "random_descriptors.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::randomDescriptors;
@@ -98,4 +98,4 @@ TEST(MatchViews, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -12,7 +12,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/text_file.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::randomDescriptors;
@@ -184,4 +184,4 @@ TEST_F(VocabularyFile, BrokenTreesInVinsMonosFormAreNamed) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

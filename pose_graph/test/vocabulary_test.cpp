@@ -9,7 +9,7 @@
 #include "random_descriptors.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using testing::randomDescriptors;
@@ -165,4 +165,4 @@ TEST(BagScore, IsOneMinusHalfTheL1Distance) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pose_graph

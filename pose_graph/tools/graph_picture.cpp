@@ -8,7 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <opencv2/imgproc.hpp>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr int kPanel = 900;  // width and height of a panel [px]
@@ -91,4 +91,4 @@ cv::Mat drawGraphs(const RelativePoseGraph& before, const RelativePoseGraph& aft
   return picture;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

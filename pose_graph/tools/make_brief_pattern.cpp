@@ -23,8 +23,8 @@ po::options_description describeOptions() {
 }
 
 vins::ToolExit makePattern(const po::variables_map& values) {
-  const auto pattern =
-      vins::BriefPattern::generate(values["seed"].as<std::uint64_t>(), values["patch"].as<int>());
+  const auto pattern = vins::pose_graph::BriefPattern::generate(values["seed"].as<std::uint64_t>(),
+                                                                values["patch"].as<int>());
   vins::writeTextFile(values["output"].as<std::string>(), pattern.toYaml());
   return vins::ToolExit::kDone;
 }

@@ -45,18 +45,18 @@ const std::map<std::string, Start> kStarts = {{"best", Start::kBest},
                                               {"odometry", Start::kOdometry},
                                               {"spanning-tree", Start::kSpanningTree},
                                               {"chordal", Start::kChordal}};
-const std::map<std::string, vins::MinimizerMethod> kMethods = {
-    {"gauss-newton", vins::MinimizerMethod::kGaussNewton},
-    {"levenberg-marquardt", vins::MinimizerMethod::kLevenbergMarquardt},
-    {"dogleg", vins::MinimizerMethod::kDogleg}};
-const std::map<std::string, vins::KernelType> kKernels = {
-    {"none", vins::KernelType::kNone},
-    {"huber", vins::KernelType::kHuber},
-    {"cauchy", vins::KernelType::kCauchy},
-    {"geman-mcclure", vins::KernelType::kGemanMcClure}};
+const std::map<std::string, vins::pose_graph::MinimizerMethod> kMethods = {
+    {"gauss-newton", vins::pose_graph::MinimizerMethod::kGaussNewton},
+    {"levenberg-marquardt", vins::pose_graph::MinimizerMethod::kLevenbergMarquardt},
+    {"dogleg", vins::pose_graph::MinimizerMethod::kDogleg}};
+const std::map<std::string, vins::pose_graph::KernelType> kKernels = {
+    {"none", vins::pose_graph::KernelType::kNone},
+    {"huber", vins::pose_graph::KernelType::kHuber},
+    {"cauchy", vins::pose_graph::KernelType::kCauchy},
+    {"geman-mcclure", vins::pose_graph::KernelType::kGemanMcClure}};
 
 po::options_description describeOptions() {
-  const vins::SixDofOptions defaults;
+  const vins::pose_graph::SixDofOptions defaults;
   po::options_description options;
   auto add = options.add_options();
   add("in", po::value<std::string>()->required(), "graph to read");
@@ -77,14 +77,14 @@ po::options_description describeOptions() {
   return options;
 }
 
-void printIteration(const vins::IterationReport& report) {
+void printIteration(const vins::pose_graph::IterationReport& report) {
   std::cout << std::setw(9) << report.iteration << std::setw(20) << std::setprecision(10)
             << report.cost << std::setw(14) << std::setprecision(4) << report.step_length
             << std::setw(14) << report.restraint << (report.accepted ? "" : "  rejected") << "\n";
 }
 
-vins::SixDofOptions readOptions(const po::variables_map& values) {
-  vins::SixDofOptions options;
+vins::pose_graph::SixDofOptions readOptions(const po::variables_map& values) {
+  vins::pose_graph::SixDofOptions options;
   options.kernel.type = choose("kernel", kKernels, values["kernel"].as<std::string>());
   options.kernel.width = values["kernel-width"].as<double>();
   options.minimizer.method = choose("method", kMethods, values["method"].as<std::string>());
@@ -94,16 +94,17 @@ vins::SixDofOptions readOptions(const po::variables_map& values) {
   return options;
 }
 
-double costOf(vins::RelativePoseGraph graph, vins::SixDofOptions options) {
+double costOf(vins::pose_graph::RelativePoseGraph graph, vins::pose_graph::SixDofOptions options) {
   options.minimizer.max_iterations = 0;
   options.minimizer.on_iteration = nullptr;
-  return vins::optimizeSixDof(&graph, options).initial_cost;
+  return vins::pose_graph::optimizeSixDof(&graph, options).initial_cost;
 }
 
 /// Poses far from any minimum, as files of odometry have them, may lead into a wrong valley.
-void placeAtBest(const vins::SixDofOptions& options, vins::RelativePoseGraph* graph) {
-  vins::RelativePoseGraph chordal = *graph;
-  if (!vins::startFromChordalRotations(&chordal)) return;
+void placeAtBest(const vins::pose_graph::SixDofOptions& options,
+                 vins::pose_graph::RelativePoseGraph* graph) {
+  vins::pose_graph::RelativePoseGraph chordal = *graph;
+  if (!vins::pose_graph::startFromChordalRotations(&chordal)) return;
   const double of_file = costOf(*graph, options), of_chordal = costOf(chordal, options);
   const bool is_better = !(of_file <= of_chordal);
   std::cout << std::setprecision(10) << "cost of the file's poses " << of_file
@@ -112,28 +113,29 @@ void placeAtBest(const vins::SixDofOptions& options, vins::RelativePoseGraph* gr
   if (is_better) *graph = std::move(chordal);
 }
 
-void placeAtStart(Start start, const vins::SixDofOptions& options, vins::RelativePoseGraph* graph) {
+void placeAtStart(Start start, const vins::pose_graph::SixDofOptions& options,
+                  vins::pose_graph::RelativePoseGraph* graph) {
   const auto begin = Clock::now();
   if (start == Start::kBest) placeAtBest(options, graph);
-  if (start == Start::kOdometry) vins::startFromOdometry(graph);
-  if (start == Start::kSpanningTree) vins::startFromSpanningTree(graph);
-  if (start == Start::kChordal && !vins::startFromChordalRotations(graph)) {
+  if (start == Start::kOdometry) vins::pose_graph::startFromOdometry(graph);
+  if (start == Start::kSpanningTree) vins::pose_graph::startFromSpanningTree(graph);
+  if (start == Start::kChordal && !vins::pose_graph::startFromChordalRotations(graph)) {
     std::cerr << "the chordal start has no solution; starting from the spanning tree\n";
   }
   if (start != Start::kFile) std::cout << "start: " << secondsSince(begin) << " s\n";
 }
 
-const char* toString(vins::MinimizerStatus status) {
-  if (status == vins::MinimizerStatus::kConverged) return "converged";
-  if (status == vins::MinimizerStatus::kFailed) return "failed: no finite solution";
+const char* toString(vins::pose_graph::MinimizerStatus status) {
+  if (status == vins::pose_graph::MinimizerStatus::kConverged) return "converged";
+  if (status == vins::pose_graph::MinimizerStatus::kFailed) return "failed: no finite solution";
   return "out of iterations";
 }
 
-void writePicture(const std::string& path, const vins::RelativePoseGraph& before,
-                  const vins::RelativePoseGraph& after) {
+void writePicture(const std::string& path, const vins::pose_graph::RelativePoseGraph& before,
+                  const vins::pose_graph::RelativePoseGraph& after) {
   bool written = false;
   try {
-    written = cv::imwrite(path, vins::drawGraphs(before, after));
+    written = cv::imwrite(path, vins::pose_graph::drawGraphs(before, after));
   } catch (const cv::Exception&) {
     // An extension that OpenCV does not know: the same message as for a folder that is not there.
   }
@@ -142,28 +144,31 @@ void writePicture(const std::string& path, const vins::RelativePoseGraph& before
 
 /// Falls short where the minimization came to no end.
 vins::ToolExit optimize(const po::variables_map& values) {
-  const vins::SixDofOptions options = readOptions(values);
+  const vins::pose_graph::SixDofOptions options = readOptions(values);
   const Start start = choose("start", kStarts, values["start"].as<std::string>());
-  vins::G2oFile file = vins::readG2oFile(values["in"].as<std::string>());
+  vins::pose_graph::G2oFile file = vins::pose_graph::readG2oFile(values["in"].as<std::string>());
   for (const std::string& warning : file.warnings) std::cerr << warning << "\n";
   std::cout << file.graph.poses.size() << " poses in " << (file.graph.planar ? 2 : 3) << "-D, "
             << file.graph.edges.size() << " edges\n";
-  const vins::RelativePoseGraph before = file.graph;
+  const vins::pose_graph::RelativePoseGraph before = file.graph;
   placeAtStart(start, options, &file.graph);
   std::cout << "iteration                cost   step length     restraint\n";
   const auto begin = Clock::now();
-  const vins::MinimizerSummary summary = vins::optimizeSixDof(&file.graph, options);
+  const vins::pose_graph::MinimizerSummary summary =
+      vins::pose_graph::optimizeSixDof(&file.graph, options);
   const double seconds = secondsSince(begin);
   std::cout << toString(summary.status) << " after " << summary.iterations << " iterations and "
             << std::setprecision(3) << seconds << " s: cost " << std::setprecision(10)
             << summary.initial_cost << " -> " << summary.final_cost << "\n";
-  if (summary.status == vins::MinimizerStatus::kFailed) return vins::ToolExit::kFellShort;
-  vins::writeG2oFile(values["out"].as<std::string>(), file);
+  if (summary.status == vins::pose_graph::MinimizerStatus::kFailed)
+    return vins::ToolExit::kFellShort;
+  vins::pose_graph::writeG2oFile(values["out"].as<std::string>(), file);
   if (values.count("picture") > 0) {
     writePicture(values["picture"].as<std::string>(), before, file.graph);
   }
-  return summary.status == vins::MinimizerStatus::kConverged ? vins::ToolExit::kDone
-                                                             : vins::ToolExit::kFellShort;
+  return summary.status == vins::pose_graph::MinimizerStatus::kConverged
+             ? vins::ToolExit::kDone
+             : vins::ToolExit::kFellShort;
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr double kBorder = 4.0;  ///< free pixels between the board and the imag
 constexpr int kTries = 1000;
 
 /// Gray level at a point of the board's plane, in squares from the first inner corner.
-double grayAt(const Chessboard& board, double x, double y) {
+double grayAt(const camera_model::Chessboard& board, double x, double y) {
   const bool on_squares = x >= -1.0 && y >= -1.0 && x < board.columns && y < board.rows;
   if (on_squares) {
     const int parity = static_cast<int>(std::floor(x) + std::floor(y));
@@ -30,7 +30,7 @@ double grayAt(const Chessboard& board, double x, double y) {
 }
 
 /// Gray level that a ray of the camera meets; the background where it misses the board's plane.
-double grayAlong(const Vector3d& bearing, const Chessboard& board, const Pose& T_bc) {
+double grayAlong(const Vector3d& bearing, const camera_model::Chessboard& board, const Pose& T_bc) {
   const Vector3d direction = T_bc.rotation * bearing;
   const double distance = -T_bc.position.z() / direction.z();
   if (!(distance > 0.0) || !std::isfinite(distance)) return kBackground;
@@ -41,12 +41,13 @@ double grayAlong(const Vector3d& bearing, const Chessboard& board, const Pose& T
 /// Grays of pixels before blur and noise.
 class PixelShader {
  public:
-  PixelShader(const Camera& camera, const Chessboard& board, const Pose& T_bc, int samples_per_side)
+  PixelShader(const camera_model::Camera& camera, const camera_model::Chessboard& board,
+              const Pose& T_bc, int samples_per_side)
       : camera_(camera), board_(board), T_bc_(T_bc), samples_(samples_per_side) {}
 
   /// At the corners of all pixels, one row and one column more than there are pixels.
   cv::Mat1f cornerGrays() const {
-    const ImageSize size = camera_.imageSize();
+    const camera_model::ImageSize size = camera_.imageSize();
     cv::Mat1f grays(size.height + 1, size.width + 1);
     for (int v = 0; v <= size.height; ++v) {
       for (int u = 0; u <= size.width; ++u) grays(v, u) = gray({u - 0.5, v - 0.5});
@@ -76,13 +77,14 @@ class PixelShader {
     return bearing ? static_cast<float>(grayAlong(*bearing, board_, T_bc_)) : 0.0F;
   }
 
-  const Camera& camera_;
-  const Chessboard& board_;
+  const camera_model::Camera& camera_;
+  const camera_model::Chessboard& board_;
   Pose T_bc_;
   int samples_;
 };
 
-bool seesWholeBoard(const Camera& camera, const Chessboard& board, const Pose& T_cb) {
+bool seesWholeBoard(const camera_model::Camera& camera, const camera_model::Chessboard& board,
+                    const Pose& T_cb) {
   const double s = board.square;
   for (const double x : {-s, board.columns * s}) {
     for (const double y : {-s, board.rows * s}) {
@@ -99,8 +101,9 @@ bool seesWholeBoard(const Camera& camera, const Chessboard& board, const Pose& T
 
 }  // namespace
 
-Pose randomBoardPose(const Camera& camera, const Chessboard& board, Random* random) {
-  const ImageSize size = camera.imageSize();
+Pose randomBoardPose(const camera_model::Camera& camera, const camera_model::Chessboard& board,
+                     Random* random) {
+  const camera_model::ImageSize size = camera.imageSize();
   const double width = (board.columns - 1) * board.square;
   const double height = (board.rows - 1) * board.square;
   for (int i = 0; i < kTries; ++i) {
@@ -119,9 +122,9 @@ Pose randomBoardPose(const Camera& camera, const Chessboard& board, Random* rand
   throw InputError("camera '" + camera.name() + "': sees no chessboard whole, wherever it is held");
 }
 
-cv::Mat renderChessboard(const Camera& camera, const Chessboard& board, const Pose& T_cb,
-                         const ChessboardImageOptions& options, Random* random) {
-  const ImageSize size = camera.imageSize();
+cv::Mat renderChessboard(const camera_model::Camera& camera, const camera_model::Chessboard& board,
+                         const Pose& T_cb, const ChessboardImageOptions& options, Random* random) {
+  const camera_model::ImageSize size = camera.imageSize();
   const PixelShader shader(camera, board, T_cb.inverse(), options.samples_per_side);
   const cv::Mat1f corners = shader.cornerGrays();
   cv::Mat1f image(size.height, size.width);

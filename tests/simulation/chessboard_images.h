@@ -19,11 +19,12 @@ struct ChessboardImageOptions {
 /// A pose T_cb at which the camera sees all squares of the board: an outermost corner of it lies on
 /// the ray of a random pixel, and its plane is tilted by up to 45 degrees and turned at random.
 /// Throws InputError where the camera sees none of a thousand such boards.
-Pose randomBoardPose(const Camera& camera, const Chessboard& board, Random* random);
+Pose randomBoardPose(const camera_model::Camera& camera, const camera_model::Chessboard& board,
+                     Random* random);
 
 /// 8-bit gray image of the board at T_cb, through the camera: dark and bright squares, a bright
 /// margin one square wide, a gray background.
-cv::Mat renderChessboard(const Camera& camera, const Chessboard& board, const Pose& T_cb,
-                         const ChessboardImageOptions& options, Random* random);
+cv::Mat renderChessboard(const camera_model::Camera& camera, const camera_model::Chessboard& board,
+                         const Pose& T_cb, const ChessboardImageOptions& options, Random* random);
 
 }  // namespace vins::simulation

@@ -20,8 +20,8 @@ Pose eurocCameraInBody(int camera) {
   return poseFromMatrix(T_bc);
 }
 
-std::unique_ptr<Camera> eurocCamera(int camera) {
-  CameraParameters p(9);
+std::unique_ptr<camera_model::Camera> eurocCamera(int camera) {
+  camera_model::CameraParameters p(9);
   if (camera == 0) {
     p << 458.654, 457.296, 367.215, 248.375, -0.28340811, 0.07395907, 0.00019359, 1.76187114e-05,
         0.0;
@@ -29,7 +29,8 @@ std::unique_ptr<Camera> eurocCamera(int camera) {
     p << 457.587, 456.134, 379.999, 255.238, -0.28368365, 0.07451284, -0.00010473, -3.55590700e-05,
         0.0;
   }
-  return std::make_unique<PinholeRadtan>(camera == 0 ? "cam0" : "cam1", ImageSize{752, 480}, p);
+  return std::make_unique<camera_model::PinholeRadtan>(camera == 0 ? "cam0" : "cam1",
+                                                       camera_model::ImageSize{752, 480}, p);
 }
 
 ImuNoise eurocImuNoise() { return {2.0e-3, 1.6968e-4, 3.0e-3, 1.9393e-5, 9.81}; }

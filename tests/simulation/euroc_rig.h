@@ -13,7 +13,7 @@ namespace vins::simulation {
 Pose eurocCameraInBody(int camera);  ///< T_bc of cam0 or cam1
 
 /// Intrinsics of cam0 or cam1.
-std::unique_ptr<Camera> eurocCamera(int camera);
+std::unique_ptr<camera_model::Camera> eurocCamera(int camera);
 
 /// Densities of imu0/sensor.yaml.
 ImuNoise eurocImuNoise();

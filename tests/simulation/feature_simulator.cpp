@@ -29,7 +29,7 @@ Eigen::Vector3d uniformOnFaces(const Eigen::AlignedBox3d& box, Random* random) {
 
 /// Cosine of the widest angle from the optical axis within the image; -1 where the corners tell
 /// none.
-double widestCosine(const Camera& camera) {
+double widestCosine(const camera_model::Camera& camera) {
   const double right = camera.imageSize().width - 1, bottom = camera.imageSize().height - 1;
   double cosine = 1.0;
   for (const Eigen::Vector2d& corner :
@@ -44,8 +44,9 @@ double widestCosine(const Camera& camera) {
 
 /// Angle that one pixel spans at a unit bearing [rad/px]: the inverse root of the area that the
 /// tangent plane's unit square has in the image.
-double angularResolution(const Camera& camera, const Eigen::Vector3d& bearing, double fallback) {
-  ProjectionJacobians jacobians;
+double angularResolution(const camera_model::Camera& camera, const Eigen::Vector3d& bearing,
+                         double fallback) {
+  camera_model::ProjectionJacobians jacobians;
   if (!camera.project(bearing, &jacobians)) return fallback;
   Eigen::Matrix<double, 3, 2> basis;
   basis.col(0) = bearing.unitOrthogonal();
@@ -93,7 +94,8 @@ std::ostream& operator<<(std::ostream& out, const FeatureSimulatorOptions& optio
              << options.moving_fraction << " swing by " << options.moving_amplitude << " m\n";
 }
 
-FeatureSimulator::FeatureSimulator(TrajectorySpline motion, std::shared_ptr<const Camera> camera,
+FeatureSimulator::FeatureSimulator(TrajectorySpline motion,
+                                   std::shared_ptr<const camera_model::Camera> camera,
                                    const Pose& T_bc, const FeatureSimulatorOptions& options)
     : motion_(std::move(motion)),
       camera_(std::move(camera)),

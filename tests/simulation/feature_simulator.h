@@ -53,8 +53,8 @@ std::ostream& operator<<(std::ostream& out, const FeatureSimulatorOptions& optio
 class FeatureSimulator {
  public:
   /// Throws InputError for bad options and where the motion does not reach over the frames.
-  FeatureSimulator(TrajectorySpline motion, std::shared_ptr<const Camera> camera, const Pose& T_bc,
-                   const FeatureSimulatorOptions& options);
+  FeatureSimulator(TrajectorySpline motion, std::shared_ptr<const camera_model::Camera> camera,
+                   const Pose& T_bc, const FeatureSimulatorOptions& options);
 
   /// The next frame, stamped in the camera's clock; nothing after the last.
   std::optional<FeatureFrame> next();
@@ -97,7 +97,7 @@ class FeatureSimulator {
   void startTracks(const View& view, FeatureFrame* frame);
 
   TrajectorySpline motion_;
-  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const camera_model::Camera> camera_;
   Pose T_bc_;
   FeatureSimulatorOptions options_;
   double widest_cosine_ = -1.0;  ///< of the angles from the optical axis within the image

@@ -19,7 +19,7 @@ constexpr double kOnSurface = 1e-6;
 }  // namespace
 
 ImageSimulator::ImageSimulator(std::shared_ptr<const Scene> scene,
-                               std::shared_ptr<const Camera> camera, const Pose& T_bc,
+                               std::shared_ptr<const camera_model::Camera> camera, const Pose& T_bc,
                                const ImageOptions& options, std::uint64_t seed,
                                const std::string& stream)
     : scene_(std::move(scene)),
@@ -31,7 +31,7 @@ ImageSimulator::ImageSimulator(std::shared_ptr<const Scene> scene,
 
 cv::Mat ImageSimulator::render(const Trajectory& T_wb, double t_s,
                                std::uint64_t frame_index) const {
-  const ImageSize size = camera_->imageSize();
+  const camera_model::ImageSize size = camera_->imageSize();
   const cv::Mat luminance = sensor_.isBlackout(t_s)
                                 ? cv::Mat::zeros(size.height, size.width, CV_32FC1)
                                 : renderer_.render(plan(T_wb, t_s), options_.threads);
@@ -89,7 +89,7 @@ double ImageSimulator::pixelMotion(const Pose& T_wb_begin, const Pose& T_wb_end,
 int ImageSimulator::exposureSamples(const Trajectory& T_wb, double t_s) const {
   const double begin_s = t_s - 0.5 * options_.exposure_s;
   const Pose begin = T_wb(begin_s), end = T_wb(begin_s + options_.exposure_s);
-  const ImageSize size = camera_->imageSize();
+  const camera_model::ImageSize size = camera_->imageSize();
   double largest = 0.0;
   for (double v = 0.05; v < 1.0; v += 0.15) {
     for (double u = 0.05; u < 1.0; u += 0.1) {

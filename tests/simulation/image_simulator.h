@@ -26,11 +26,11 @@ class ImageSimulator {
 
   /// `stream` names the camera's noise: two cameras of one seed need two names. Throws InputError
   /// for bad options.
-  ImageSimulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const Camera> camera,
-                 const Pose& T_bc, const ImageOptions& options, std::uint64_t seed,
-                 const std::string& stream);
+  ImageSimulator(std::shared_ptr<const Scene> scene,
+                 std::shared_ptr<const camera_model::Camera> camera, const Pose& T_bc,
+                 const ImageOptions& options, std::uint64_t seed, const std::string& stream);
 
-  const Camera& camera() const { return *camera_; }
+  const camera_model::Camera& camera() const { return *camera_; }
   const Scene& scene() const { return *scene_; }
 
   /// The image stamped t_s, CV_8UC1. T_wb is called from this thread only, at times within the
@@ -59,7 +59,7 @@ class ImageSimulator {
   ExposurePlan plan(const Trajectory& T_wb, double t_s) const;
 
   std::shared_ptr<const Scene> scene_;
-  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const camera_model::Camera> camera_;
   Pose T_bc_;
   ImageOptions options_;
   ImageSensor sensor_;

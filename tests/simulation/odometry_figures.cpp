@@ -71,8 +71,8 @@ double lengthOf(const Positions& positions) {
 }
 
 /// The true state as the estimate's world has it.
-NavState movedBy(const Pose& T, const NavState& state) {
-  NavState moved = state;
+estimator::NavState movedBy(const Pose& T, const estimator::NavState& state) {
+  estimator::NavState moved = state;
   moved.T_wb = T * state.T_wb;
   moved.v_w = T.rotation * state.v_w;
   return moved;
@@ -80,20 +80,22 @@ NavState movedBy(const Pose& T, const NavState& state) {
 
 /// NEES per degree of freedom of `size` error states from `begin` on; not finite where the
 /// covariance is not positive definite.
-double nees(const Vector15d& error, const Matrix15d& covariance, int begin, int size) {
+double nees(const estimator::Vector15d& error, const estimator::Matrix15d& covariance, int begin,
+            int size) {
   const Eigen::LLT<Eigen::MatrixXd> cholesky(covariance.block(begin, begin, size, size));
   if (cholesky.info() != Eigen::Success) return std::nan("");
   const Eigen::VectorXd e = error.segment(begin, size);
   return e.dot(cholesky.solve(e)) / size;
 }
 
-void add(const Vector15d& error, const Matrix15d& covariance, Consistency* sum) {
-  sum->position += nees(error, covariance, kPosition, 3);
-  sum->rotation += nees(error, covariance, kRotation, 3);
-  sum->pose += nees(error, covariance, kPosition, 6);
-  sum->velocity += nees(error, covariance, kVelocity, 3);
-  sum->accelerometer_bias += nees(error, covariance, kAccBias, 3);
-  sum->gyroscope_bias += nees(error, covariance, kGyrBias, 3);
+void add(const estimator::Vector15d& error, const estimator::Matrix15d& covariance,
+         Consistency* sum) {
+  sum->position += nees(error, covariance, estimator::kPosition, 3);
+  sum->rotation += nees(error, covariance, estimator::kRotation, 3);
+  sum->pose += nees(error, covariance, estimator::kPosition, 6);
+  sum->velocity += nees(error, covariance, estimator::kVelocity, 3);
+  sum->accelerometer_bias += nees(error, covariance, estimator::kAccBias, 3);
+  sum->gyroscope_bias += nees(error, covariance, estimator::kGyrBias, 3);
 }
 
 bool isFinite(const Consistency& c) {
@@ -125,9 +127,9 @@ void judgeByGauge(const OdometryRun& run, OdometryFigures* figures) {
     if (sample.gauge) {
       T_estimate_truth = alignPositionAndYaw(sample.gauge->truth, sample.gauge->estimate);
     }
-    const NavState truth = movedBy(T_estimate_truth, sample.truth);
-    const Vector15d error = minus(truth, sample.estimate.state);
-    figures->drift = error.segment<3>(kPosition).norm();
+    const estimator::NavState truth = movedBy(T_estimate_truth, sample.truth);
+    const estimator::Vector15d error = minus(truth, sample.estimate.state);
+    figures->drift = error.segment<3>(estimator::kPosition).norm();
     Consistency now;
     add(error, sample.estimate.covariance, &now);
     if (!isFinite(now)) continue;
@@ -200,7 +202,7 @@ std::optional<double> scaleError(const Positions& estimated, const Positions& tr
 namespace {
 
 void judgeRig(const OdometryRun& run, OdometryFigures* figures) {
-  const Vector7d error = minus(run.true_rig, run.rig);
+  const estimator::Vector7d error = minus(run.true_rig, run.rig);
   figures->extrinsic_translation_error = error.head<3>().norm();
   figures->extrinsic_rotation_error = error.segment<3>(3).norm();
   figures->td_error = std::abs(error(6));

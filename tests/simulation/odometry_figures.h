@@ -25,8 +25,8 @@ struct Gauge {
 
 /// The state and what it should have been.
 struct OdometrySample {
-  Odometry estimate;
-  NavState truth;
+  estimator::Odometry estimate;
+  estimator::NavState truth;
   std::optional<Gauge> gauge;  ///< with the first sample
 };
 
@@ -39,9 +39,10 @@ struct OdometryRun {
   std::vector<double> frame_seconds;    ///< work of the estimator on each frame [s]
   std::vector<double> megabytes;        ///< resident memory after each minute of the flight
   std::vector<Event> events;
-  RigCalibration rig;                          ///< as last estimated
-  RigCalibration true_rig;                     ///< as simulated
-  Matrix7d rig_covariance = Matrix7d::Zero();  ///< zero where the rig was not estimated
+  estimator::RigCalibration rig;       ///< as last estimated
+  estimator::RigCalibration true_rig;  ///< as simulated
+  estimator::Matrix7d rig_covariance =
+      estimator::Matrix7d::Zero();  ///< zero where the rig was not estimated
 };
 
 /// Normalised estimation error squared (NEES), averaged over a run, per degree of freedom: 1 is

@@ -74,8 +74,9 @@ ImuRecording makeImu(const OdometryStudyOptions& options, const TrajectorySpline
                      end + toNanoseconds(options.time_offset), imuOptions(options, seed), seed);
 }
 
-EstimatorOptions estimatorOptions(const OdometryStudyOptions& options, std::uint64_t seed) {
-  EstimatorOptions estimator = options.estimator;
+estimator::EstimatorOptions estimatorOptions(const OdometryStudyOptions& options,
+                                             std::uint64_t seed) {
+  estimator::EstimatorOptions estimator = options.estimator;
   estimator.imu = imuOptions(options, seed).noise;
   estimator.pixel_noise = std::max(options.features.pixel_noise, 0.1);
   return estimator;
@@ -140,20 +141,20 @@ class Flight {
     }
   }
 
-  void keep(const EstimatorResult& result) {
+  void keep(const estimator::EstimatorResult& result) {
     OdometrySample sample{*result.odometry, truthAt(result.odometry->stamp), std::nullopt};
     // After a reset the odometry goes on where it was, and its covariance tells how well.
     const bool is_first = run_.samples.empty();
     if (is_first && result.window.empty()) {
       sample.gauge = Gauge{sample.estimate.state.T_wb, sample.truth.T_wb};
     } else if (is_first) {
-      const StampedNavState& oldest = result.window.front();
+      const estimator::StampedNavState& oldest = result.window.front();
       sample.gauge = Gauge{oldest.state.T_wb, truthAt(oldest.stamp).T_wb};
     }
     run_.samples.push_back(sample);
   }
 
-  NavState truthAt(Stamp stamp) const {
+  estimator::NavState truthAt(Stamp stamp) const {
     const MotionState motion = motion_.at(motion_.secondsAt(stamp));
     const auto after =
         std::lower_bound(imu_.biases.begin(), imu_.biases.end(), stamp + offset_,
@@ -169,7 +170,7 @@ class Flight {
   Stamp offset_;
   std::vector<TimeInterval> blackouts_;
   std::vector<ArrivedSample> samples_;
-  Estimator estimator_;
+  estimator::Estimator estimator_;
   FeatureSimulator features_;
   std::size_t next_sample_ = 0;
   OdometryRun run_;

@@ -2,7 +2,7 @@
 
 namespace vins::simulation {
 
-RayGrid::RayGrid(const Camera& camera)
+RayGrid::RayGrid(const camera_model::Camera& camera)
     : width_(camera.imageSize().width),
       height_(camera.imageSize().height),
       stride_(width_ + 2),

@@ -12,7 +12,7 @@ namespace vins::simulation {
 /// 6e-8 rad, which is below 1e-3 px for any lens. Where the camera has no bearing it is zero.
 class RayGrid {
  public:
-  explicit RayGrid(const Camera& camera);
+  explicit RayGrid(const camera_model::Camera& camera);
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -128,7 +128,8 @@ Rig makeRig(const RecordingOptions& options) {
   Rig rig;
   for (int camera = 0; camera < (options.stereo ? 2 : 1); ++camera) {
     const bool is_own = !options.camera_file.empty();
-    rig.cameras.push_back(is_own ? readCameraFile(options.camera_file) : eurocCamera(camera));
+    rig.cameras.push_back(is_own ? camera_model::readCameraFile(options.camera_file)
+                                 : eurocCamera(camera));
     rig.T_bc.push_back(eurocCameraInBody(camera));
   }
   rig.noise = imuOptions(options).noise;

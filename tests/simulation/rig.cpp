@@ -32,8 +32,9 @@ double parameterDeviation(const std::string& name, double value) {
   return 0.01 * std::abs(value);
 }
 
-std::shared_ptr<const Camera> perturbed(const Camera& camera, double sigmas, Random* random) {
-  CameraParameters parameters = camera.parameters();
+std::shared_ptr<const camera_model::Camera> perturbed(const camera_model::Camera& camera,
+                                                      double sigmas, Random* random) {
+  camera_model::CameraParameters parameters = camera.parameters();
   const std::vector<std::string> names = camera.parameterNames();
   for (Eigen::Index i = 0; i < parameters.size(); ++i) {
     const double deviation = parameterDeviation(names[static_cast<std::size_t>(i)], parameters[i]);
@@ -131,9 +132,9 @@ Rig withCalibrationError(const Rig& rig, double sigmas, std::uint64_t seed) {
 
 std::string toVinsYaml(const Rig& rig, std::size_t camera) {
   // YAML's head comes with the camera, which therefore stands first.
-  return toCamodocalYaml(*rig.cameras[camera]) + "\n# Topics and results\nimu_topic: \"/imu0\"\n" +
-         "image_topic: \"/cam" + std::to_string(camera) +
-         "/image_raw\"\noutput_path: \"/tmp/vins_output/\"\n" +
+  return camera_model::toCamodocalYaml(*rig.cameras[camera]) +
+         "\n# Topics and results\nimu_topic: \"/imu0\"\n" + "image_topic: \"/cam" +
+         std::to_string(camera) + "/image_raw\"\noutput_path: \"/tmp/vins_output/\"\n" +
          "\n# Camera in the body (IMU) frame; 0: trust it, 1: refine it\nestimate_extrinsic: " +
          (rig.estimate_extrinsic ? "1" : "0") + "\n" +
          matrixText("extrinsicRotation", rig.T_bc[camera].rotation.toRotationMatrix()) +

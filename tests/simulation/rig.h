@@ -13,7 +13,7 @@ namespace vins::simulation {
 
 /// What a user is told about a camera-IMU rig.
 struct Rig {
-  std::vector<std::shared_ptr<const Camera>> cameras;
+  std::vector<std::shared_ptr<const camera_model::Camera>> cameras;
   std::vector<Pose> T_bc;                ///< of each camera
   ImuNoise noise;                        ///< as a filter should assume it
   double time_offset = 0.0;              ///< td [s]

@@ -7,7 +7,7 @@
 
 namespace vins::simulation {
 
-SceneRenderer::SceneRenderer(std::shared_ptr<const Scene> scene, const Camera& camera)
+SceneRenderer::SceneRenderer(std::shared_ptr<const Scene> scene, const camera_model::Camera& camera)
     : scene_(std::move(scene)),
       rays_(camera),
       tiles_per_band_((rays_.width() + kTileSize - 1) / kTileSize) {

@@ -34,7 +34,7 @@ struct ExposurePlan {
 /// more, across their area and all instants.
 class SceneRenderer {
  public:
-  SceneRenderer(std::shared_ptr<const Scene> scene, const Camera& camera);
+  SceneRenderer(std::shared_ptr<const Scene> scene, const camera_model::Camera& camera);
 
   /// Luminance in [0, 1] as CV_32FC1; 0 where the camera has no bearing or nothing is seen. The
   /// same for any number of threads.

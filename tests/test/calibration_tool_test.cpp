@@ -13,7 +13,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::tests {
 namespace {
 
 /// Programs of the build lie beside each other, a folder a package.
@@ -37,8 +37,8 @@ Outcome run(const std::string& command) {
 const std::string kCalibrate = program("camera_model", "intrinsic_calibration");
 const std::string kRender = program("vins_tests", "simulate_chessboard");
 
-double focalLength(const Camera& camera) {
-  ProjectionJacobians jacobians;
+double focalLength(const camera_model::Camera& camera) {
+  camera_model::ProjectionJacobians jacobians;
   camera.project({0.0, 0.0, 1.0}, &jacobians);
   return jacobians.J_pixel_point(0, 0);
 }
@@ -47,7 +47,7 @@ class CalibrationTool : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(CalibrationTool, RecoversTheCameraFromRenderedImages) {
   const std::string camera_file = "../config/simulation/" + GetParam() + "_camera.yaml";
-  const auto truth = readCameraFile(camera_file);
+  const auto truth = camera_model::readCameraFile(camera_file);
   const fs::path folder = fs::path(::testing::TempDir()) / ("calibration_" + GetParam());
   fs::remove_all(folder);
   const Outcome rendered =
@@ -60,12 +60,12 @@ TEST_P(CalibrationTool, RecoversTheCameraFromRenderedImages) {
           (folder / "results").string());
   ASSERT_EQ(calibrated.exit_code, 0) << calibrated.output;
 
-  const auto estimate =
-      readCameraFile((folder / "results" / (GetParam() + "_camera_calib.yaml")).string());
+  const auto estimate = camera_model::readCameraFile(
+      (folder / "results" / (GetParam() + "_camera_calib.yaml")).string());
   EXPECT_EQ(estimate->model(), truth->model());
   if (GetParam() != "ocam") {
-    const auto kalibr =
-        readCameraFile((folder / "results" / (GetParam() + "_camchain.yaml")).string());
+    const auto kalibr = camera_model::readCameraFile(
+        (folder / "results" / (GetParam() + "_camchain.yaml")).string());
     EXPECT_EQ(kalibr->parameters(), estimate->parameters());
   }
   EXPECT_EQ(estimate->imageSize(), truth->imageSize());
@@ -103,4 +103,4 @@ TEST(CalibrationToolErrors, TellWhatToDo) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::tests

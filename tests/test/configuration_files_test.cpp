@@ -14,7 +14,7 @@
 #include "camera_model/camera_file.h"
 #include "vins_pipeline/pipeline.h"
 
-namespace vins {
+namespace vins::tests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,7 +53,8 @@ TEST_F(ConfigurationFiles, EveryRigLoadsAndHasNoUnknownKey) {
   EXPECT_GE(files.size(), 4u);
   for (const fs::path& file : files) {
     std::vector<std::string> warnings;
-    const PipelineOptions options = readPipelineOptions(file.string(), &warnings);
+    const pipeline::PipelineOptions options =
+        pipeline::readPipelineOptions(file.string(), &warnings);
     EXPECT_TRUE(warnings.empty()) << warnings.front();
     EXPECT_FALSE(options.imu_topic.empty()) << file;
     EXPECT_TRUE(options.loops.is_on) << file;
@@ -65,7 +66,7 @@ TEST_F(ConfigurationFiles, EveryCameraLoadsAndHasNoUnknownKey) {
   EXPECT_GE(files.size(), 4u);
   for (const fs::path& file : files) {
     const Parameters parameters = Parameters::load(file.string());
-    const auto camera = readCamera(parameters);
+    const auto camera = camera_model::readCamera(parameters);
     const std::vector<std::string> warnings = parameters.warnings();
     EXPECT_TRUE(warnings.empty()) << warnings.front();
   }
@@ -74,8 +75,8 @@ TEST_F(ConfigurationFiles, EveryCameraLoadsAndHasNoUnknownKey) {
 TEST_F(ConfigurationFiles, FisheyeRigsLookFarToTheSideAndMaskTheRim) {
   for (const std::string rig : {"tum_vi", "realsense_t265"}) {
     const std::string file = "../config/" + rig + "/" + rig + "_config.yaml";
-    const PipelineOptions options = readPipelineOptions(file, nullptr);
-    const ImageSize size = options.cameras[0]->imageSize();
+    const pipeline::PipelineOptions options = pipeline::readPipelineOptions(file, nullptr);
+    const camera_model::ImageSize size = options.cameras[0]->imageSize();
     // Over 65 degrees from the axis at the mask's edge: no pinhole camera has that.
     const auto ray =
         options.cameras[0]->unproject(Eigen::Vector2d(0.02 * size.width, 0.5 * size.height));
@@ -89,7 +90,7 @@ TEST_F(ConfigurationFiles, FisheyeRigsLookFarToTheSideAndMaskTheRim) {
 
 TEST_F(ConfigurationFiles, VinsMonosOwnFormRunsUnchanged) {
   std::vector<std::string> warnings;
-  const PipelineOptions options = readPipelineOptions(kVinsMonoFile, &warnings);
+  const pipeline::PipelineOptions options = pipeline::readPipelineOptions(kVinsMonoFile, &warnings);
   EXPECT_TRUE(warnings.empty()) << warnings.front();
   EXPECT_EQ(options.imu_topic, "/imu0");
   EXPECT_EQ(options.image_topics[0], "/cam0/image_raw");
@@ -106,11 +107,11 @@ TEST_F(ConfigurationFiles, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
   std::vector<std::string> warnings;
   std::ifstream in(kVinsMonoFile);
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  readPipelineOptions(write(text + "max_cn: 100\n"), &warnings);
+  pipeline::readPipelineOptions(write(text + "max_cn: 100\n"), &warnings);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("'max_cn'"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("'max_cnt'"), std::string::npos) << warnings[0];
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::tests

@@ -35,7 +35,7 @@ TEST(EstimatorStudy, FindsATimeOffsetOfThirtyMilliseconds) {
 
 TEST(EstimatorStudy, CorrectsAnExtrinsicThatIsFiveDegreesOff) {
   OdometryStudyOptions options = flight("hall_loop", 25.0);
-  options.estimator.extrinsic = ExtrinsicMode::kRefined;
+  options.estimator.extrinsic = estimator::ExtrinsicMode::kRefined;
   options.estimator.T_bc.rotation =
       options.T_bc.rotation *
       so3::exp(5.0 * kDegree * Eigen::Vector3d(1.0, -1.0, 1.0).normalized());
@@ -47,7 +47,7 @@ TEST(EstimatorStudy, CorrectsAnExtrinsicThatIsFiveDegreesOff) {
 
 TEST(EstimatorStudy, FindsAnUnknownExtrinsic) {
   OdometryStudyOptions options = flight("hall_loop", 30.0);
-  options.estimator.extrinsic = ExtrinsicMode::kUnknown;
+  options.estimator.extrinsic = estimator::ExtrinsicMode::kUnknown;
   options.estimator.T_bc = Pose();
   const OdometryFigures figures = evaluate(runOdometry(options, 2));
   ASSERT_TRUE(figures.initialised);
@@ -57,7 +57,7 @@ TEST(EstimatorStudy, FindsAnUnknownExtrinsic) {
 
 TEST(EstimatorStudy, LeavesTheRigAloneWhereNothingShowsIt) {
   OdometryStudyOptions options = flight("still", 15.0);
-  options.estimator.extrinsic = ExtrinsicMode::kRefined;
+  options.estimator.extrinsic = estimator::ExtrinsicMode::kRefined;
   options.estimator.estimate_td = true;
   const OdometryRun run = runOdometry(options, 1);
   const OdometryFigures figures = evaluate(run);
@@ -102,7 +102,7 @@ TEST(EstimatorStudy, InventsNoPositionWhileTheRigOnlyTurns) {
 TEST(EstimatorStudy, MotionOnlyAdjustmentIsNearlyAsGood) {
   OdometryStudyOptions options = flight("hall_loop", 20.0);
   const OdometryFigures full = evaluate(runOdometry(options, 4));
-  options.estimator.motion_only = MotionOnly::kAlways;
+  options.estimator.motion_only = estimator::MotionOnly::kAlways;
   const OdometryFigures fast = evaluate(runOdometry(options, 4));
   ASSERT_TRUE(full.initialised && fast.initialised);
   EXPECT_LT(fast.ate, 3.0 * full.ate + 0.01);

@@ -16,7 +16,7 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using testing::parametersOf;
+using vins::camera_model::testing::parametersOf;
 
 double difference(const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF); }
 
@@ -49,9 +49,10 @@ Scene edgeAhead() {
   return Scene(panels, {}, {}, AlignedBox3d(Vector3d(-1, -1, -1), Vector3d(1, 1, 1)));
 }
 
-std::shared_ptr<const Camera> idealPinhole() {
-  return std::make_shared<PinholeRadtan>("ideal", ImageSize{320, 240},
-                                         parametersOf({400, 400, 159.5, 119.5, 0, 0, 0, 0, 0}));
+std::shared_ptr<const camera_model::Camera> idealPinhole() {
+  return std::make_shared<camera_model::PinholeRadtan>(
+      "ideal", camera_model::ImageSize{320, 240},
+      parametersOf({400, 400, 159.5, 119.5, 0, 0, 0, 0, 0}));
 }
 
 struct EdgeProfile {
@@ -73,7 +74,7 @@ EdgeProfile profileOf(const cv::Mat& image, int row) {
 
 TEST(ImageSimulator, GreyValuesAreThoseOfThePanelsThatRaysMeet) {
   const auto scene = std::make_shared<const Scene>(greyRoom());
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     ImageOptions options = noiseFree();
     options.exposure_s = 0.0;
     const ImageSimulator simulator(scene, camera, forwardCamera(), options, 1, "cam0");
@@ -105,7 +106,7 @@ TEST(ImageSimulator, GreyValuesAreThoseOfThePanelsThatRaysMeet) {
 }
 
 TEST(ImageSimulator, SameSeedGivesTheSameBytesAndAnotherDoesNot) {
-  const auto camera = testing::exampleCameras().front();
+  const auto camera = vins::camera_model::testing::exampleCameras().front();
   ImageOptions options;
   options.rolling_shutter_readout_s = 0.01;
   const ImageSimulator a(sharedRoom(), camera, forwardCamera(), options, 5, "cam0");
@@ -216,7 +217,7 @@ TEST(ImageSimulator, MovingObjectChangesOnlyWhatItCovers) {
 }
 
 TEST(ImageSimulator, KnowsWhatAPixelSeesAndWhetherAPointIsSeen) {
-  const auto camera = testing::exampleCameras().front();
+  const auto camera = vins::camera_model::testing::exampleCameras().front();
   const ImageSimulator simulator(sharedRoom(), camera, forwardCamera(), noiseFree(), 1, "cam0");
   const Pose T_wb = roomTrajectory(3.0);
   const Pose T_wc = T_wb * forwardCamera();

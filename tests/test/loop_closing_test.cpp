@@ -17,7 +17,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::tests {
 namespace {
 
 std::string textOf(const fs::path& path) {
@@ -172,4 +172,4 @@ TEST_F(LoopClosing, MapsThatCannotBeReadAreTold) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::tests

@@ -37,14 +37,14 @@ OdometryRun makeRun(const Pose& T_estimate_truth, double deviation, std::uint64_
     sample.truth.T_wb = truePose(t);
     sample.truth.v_w = Vector3d(std::sin(t), 0.0, 1.0);
     sample.estimate.stamp = toNanoseconds(t);
-    NavState state = sample.truth;
+    estimator::NavState state = sample.truth;
     state.T_wb = T_estimate_truth * state.T_wb;
     state.v_w = T_estimate_truth.rotation * state.v_w;
     state.T_wb.position *= scale;
-    Vector15d error;
+    estimator::Vector15d error;
     for (int k = 0; k < 15; ++k) error[k] = deviation * random.normal();
     sample.estimate.state = plus(state, error);
-    sample.estimate.covariance = deviation * deviation * Matrix15d::Identity();
+    sample.estimate.covariance = deviation * deviation * estimator::Matrix15d::Identity();
     if (i == 20) sample.gauge = Gauge{state.T_wb, sample.truth.T_wb};
     run.samples.push_back(sample);
     run.frame_seconds.push_back(1e-3 * (i % 100));

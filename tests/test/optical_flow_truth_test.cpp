@@ -80,7 +80,8 @@ FlowErrors measureFlow(const ImageSimulator& simulator) {
           {medianOf(x_errors), medianOf(y_errors)}};
 }
 
-FlowErrors measureFlow(const std::shared_ptr<const Camera>& camera, const ImageOptions& options) {
+FlowErrors measureFlow(const std::shared_ptr<const camera_model::Camera>& camera,
+                       const ImageOptions& options) {
   const FlowErrors errors =
       measureFlow(ImageSimulator(sharedRoom(), camera, forwardCamera(), options, 1, "cam0"));
   std::cout << camera->name() << ": " << errors.tracks << " tracks, median error "
@@ -89,7 +90,7 @@ FlowErrors measureFlow(const std::shared_ptr<const Camera>& camera, const ImageO
 }
 
 TEST(OpticalFlow, OfNoiseFreeImagesMatchesGeometry) {
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const FlowErrors errors = measureFlow(camera, noiseFree());
     EXPECT_GT(errors.tracks, 300) << camera->name();
     EXPECT_LT(errors.median_px, 0.10) << camera->name();
@@ -98,7 +99,7 @@ TEST(OpticalFlow, OfNoiseFreeImagesMatchesGeometry) {
 }
 
 TEST(OpticalFlow, OfNoisyImagesMatchesGeometry) {
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const FlowErrors errors = measureFlow(camera, ImageOptions());
     EXPECT_GT(errors.tracks, 300) << camera->name();
     EXPECT_LT(errors.median_px, 0.15) << camera->name();
@@ -109,7 +110,7 @@ TEST(OpticalFlow, OfNoisyImagesMatchesGeometry) {
 TEST(OpticalFlow, OfARollingShutterMatchesGeometryRowByRow) {
   ImageOptions options;
   options.rolling_shutter_readout_s = 0.03;
-  for (const auto& camera : testing::exampleCameras()) {
+  for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const FlowErrors errors = measureFlow(camera, options);
     EXPECT_LT(errors.median_px, 0.15) << camera->name();
     EXPECT_LT(errors.bias_px.norm(), 0.02) << camera->name();
@@ -128,7 +129,7 @@ TEST(OpticalFlow, SurfacesDoNotShimmer) {
   // Slowly, by about half a pixel per image, past all phases of the pixel grid and across mip
   // levels.
   const auto slowly = [](double t_s) { return roomTrajectory(2.0 + 0.03 * t_s); };
-  const auto camera = testing::exampleCameras().front();
+  const auto camera = vins::camera_model::testing::exampleCameras().front();
   ImageOptions options = noiseFree();
   options.gain = 1.0;
   const ImageSimulator simulator(sharedRoom(), camera, forwardCamera(), options, 1, "cam0");

@@ -23,7 +23,7 @@
 #include "vins_estimator/estimator_options.h"
 #include "vins_pipeline/pipeline.h"
 
-namespace vins {
+namespace vins::tests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,8 +106,8 @@ class ParametersPage : public ::testing::Test {
 
   /// What the readers make of the text, as text.
   std::string describe(const std::string& text) const {
-    const PipelineOptions options = readPipelineOptions(write(text), nullptr);
-    const PoseGraphConfiguration& loops = options.loops;
+    const pipeline::PipelineOptions options = pipeline::readPipelineOptions(write(text), nullptr);
+    const pose_graph::PoseGraphConfiguration& loops = options.loops;
     std::ostringstream out;
     out << options.cameras[0]->name() << options.tracker << options.estimator << loops.options
         << loops.is_on << loops.options.refines_in_window << loops.loads_map << loops.saves_images
@@ -118,12 +118,12 @@ class ParametersPage : public ::testing::Test {
   bool isKnown(const std::string& key, const std::string& file) const {
     if (without(file, key) != file) {
       std::vector<std::string> warnings;
-      readPipelineOptions(write(file), &warnings);
+      pipeline::readPipelineOptions(write(file), &warnings);
       return warnings.empty();
     }
     try {
       std::vector<std::string> warnings;
-      readPipelineOptions(write(file + key + ": 1\n"), &warnings);
+      pipeline::readPipelineOptions(write(file + key + ": 1\n"), &warnings);
       return warnings.empty();
     } catch (const InputError& error) {
       return true;  // of another key nobody would have said anything
@@ -162,10 +162,10 @@ std::set<std::string> wordsOfSources() {
 std::set<std::string> allowedByCode(const std::string& key) {
   std::set<std::string> allowed;
   const std::vector<std::function<void(const Parameters&)>> readers = {
-      [](const Parameters& p) { readCamera(p); },
-      [](const Parameters& p) { readFeatureTrackerOptions(p); },
-      [](const Parameters& p) { readEstimatorOptions(p); },
-      [](const Parameters& p) { readPoseGraphConfiguration(p); }};
+      [](const Parameters& p) { camera_model::readCamera(p); },
+      [](const Parameters& p) { feature_tracker::readFeatureTrackerOptions(p); },
+      [](const Parameters& p) { estimator::readEstimatorOptions(p); },
+      [](const Parameters& p) { pose_graph::readPoseGraphConfiguration(p); }};
   for (const std::string& file : smallFiles()) {
     // A sequence of sequences is neither a number nor text, a section nor a matrix.
     const std::string text = without(file, key) + key + ": [[nonsense]]\n";
@@ -256,4 +256,4 @@ TEST_F(ParametersPage, SaysNeededWhereTheCodeDoes) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::tests

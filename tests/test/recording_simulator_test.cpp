@@ -47,11 +47,12 @@ TEST(RecordingSimulator, ImagesImuAndTruthAreOfOneMotion) {
 }
 
 TEST(RecordingSimulator, OfARecordedFlightTheCamerasClockIsBehindByTd) {
-  const std::string file = testing::sharedData("groundtruth/V2_01_easy.txt");
+  const std::string file = vins::testing::sharedData("groundtruth/V2_01_easy.txt");
   VINS_SKIP_WITHOUT(file);
   RecordingOptions options;
   options.trajectory = file;
-  options.recorded_imu = readImuCsv(testing::sharedData("recorded_imu/V2_01_easy.csv"));
+  options.recorded_imu =
+      pipeline::readImuCsv(vins::testing::sharedData("recorded_imu/V2_01_easy.csv"));
   options.start = 20.0;
   options.duration = 2.0;
   options.time_offset = 0.03;
@@ -84,7 +85,7 @@ TEST(RecordingSimulator, BlackoutsAndDroppedFramesCountFromTheStart) {
 }
 
 TEST(RecordingSimulator, RefusesSpansThatAreNotThere) {
-  const std::string file = testing::sharedData("groundtruth/V1_01_easy.txt");
+  const std::string file = vins::testing::sharedData("groundtruth/V1_01_easy.txt");
   VINS_SKIP_WITHOUT(file);
   RecordingOptions options;
   options.trajectory = file;

@@ -30,7 +30,7 @@ TEST(Rig, IsReadBackFromItsYaml) {
   const Parameters file = Parameters::parse(toVinsYaml(rig, 1), "rig.yaml");
   EXPECT_EQ(file.text("image_topic"), "/cam1/image_raw");
   EXPECT_EQ(file.text("imu_topic"), "/imu0");
-  EXPECT_EQ(readCamera(file)->parameters(), rig.cameras[1]->parameters());
+  EXPECT_EQ(camera_model::readCamera(file)->parameters(), rig.cameras[1]->parameters());
   EXPECT_EQ(file.matrix("extrinsicTranslation", 3, 1), rig.T_bc[1].position);
   EXPECT_EQ(file.matrix("extrinsicRotation", 3, 3), rig.T_bc[1].rotation.toRotationMatrix());
   EXPECT_EQ(file.number("acc_n"), rig.noise.accelerometer_noise);
@@ -48,7 +48,8 @@ TEST(Rig, CalibrationErrorsHaveTheirSize) {
   const int runs = 300;
   for (std::uint64_t seed = 0; seed < runs; ++seed) {
     const Rig erring = withCalibrationError(rig, 2.0, seed);
-    const CameraParameters p = rig.cameras[0]->parameters(), q = erring.cameras[0]->parameters();
+    const camera_model::CameraParameters p = rig.cameras[0]->parameters(),
+                                         q = erring.cameras[0]->parameters();
     focal += std::pow(q[0] / p[0] - 1.0, 2);
     centre += std::pow(q[2] - p[2], 2);
     rotation +=

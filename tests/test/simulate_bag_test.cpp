@@ -23,7 +23,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::tests {
 namespace {
 
 const fs::path kFolder = fs::path(::testing::TempDir()) / "simulate_bag_test";
@@ -95,7 +95,8 @@ TEST_F(SimulateBag, WritesTopicsPosesAndRig) {
   EXPECT_EQ(rig.number("td"), 0.0);
   EXPECT_TRUE(rig.flag("estimate_td"));
   EXPECT_EQ(truth.number("td"), 0.01);
-  EXPECT_NE(readCamera(rig)->parameters(), readCamera(truth)->parameters());
+  EXPECT_NE(camera_model::readCamera(rig)->parameters(),
+            camera_model::readCamera(truth)->parameters());
   EXPECT_TRUE(fs::exists(kFolder / "s_rig_cam1.yaml"));
   EXPECT_TRUE(fs::exists(kFolder / "s_imu_biases.txt"));
 }
@@ -119,14 +120,14 @@ TEST_F(SimulateBag, FaultsAreInTheBag) {
 }
 
 TEST_F(SimulateBag, RecordedImuIsTakenAsItIs) {
-  const std::string poses = testing::sharedData("groundtruth/V2_01_easy.txt");
-  const std::string imu = testing::sharedData("recorded_imu/V2_01_easy.csv");
+  const std::string poses = vins::testing::sharedData("groundtruth/V2_01_easy.txt");
+  const std::string imu = vins::testing::sharedData("recorded_imu/V2_01_easy.csv");
   VINS_SKIP_WITHOUT(imu);
   const Outcome outcome = simulate("r.bag", "--trajectory " + poses + " --recorded-imu " + imu +
                                                 " --start 20 --duration 1 --rate 5");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   std::map<Stamp, ImuSample> recorded;
-  for (const ImuSample& sample : readImuCsv(imu)) recorded[sample.stamp] = sample;
+  for (const ImuSample& sample : pipeline::readImuCsv(imu)) recorded[sample.stamp] = sample;
   const auto messages = messagesOf<sensor_msgs::Imu>("r.bag", "/imu0");
   EXPECT_NEAR(static_cast<double>(messages.size()), 204.0, 1.0);
   for (const sensor_msgs::Imu& message : messages) {
@@ -164,4 +165,4 @@ TEST_F(SimulateBag, ErrorsTellWhatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::tests

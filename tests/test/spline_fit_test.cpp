@@ -104,7 +104,7 @@ class RealGroundTruth
 
 TEST_P(RealGroundTruth, IsFollowedWithPlausibleAccelerations) {
   const auto [name, rms_mm, max_mm, rms_degrees, max_degrees] = GetParam();
-  const std::string path = testing::sharedData(name);
+  const std::string path = vins::testing::sharedData(name);
   VINS_SKIP_WITHOUT(path);
   const Trajectory trajectory = readTrajectoryFile(path);
   const SplineFit fit = fitSpline(trajectory);

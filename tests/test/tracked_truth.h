@@ -54,7 +54,7 @@ class TruthKeeper {
  public:
   explicit TruthKeeper(const SimulatedRecording& recording) : recording_(recording) {}
 
-  void add(const FeatureTrackerResult& result) {
+  void add(const feature_tracker::FeatureTrackerResult& result) {
     const double t_s = recording_.motion.secondsAt(result.frame->stamp);
     const Pose T_wb = recording_.motion.poseAt(t_s);
     std::map<std::int64_t, Seen> now;
@@ -126,9 +126,11 @@ inline std::vector<ImuSample> samplesBetween(const SimulatedRecording& recording
 
 /// Tracks all images of a recording, with the gyroscope or without.
 inline TrackedTruth trackRecording(const SimulatedRecording& recording,
-                                   const FeatureTrackerOptions& options, bool gyroscope = true) {
+                                   const feature_tracker::FeatureTrackerOptions& options,
+                                   bool gyroscope = true) {
   cv::setNumThreads(1);
-  FeatureTracker tracker({recording.rig.cameras[0]}, {recording.rig.T_bc[0]}, options);
+  feature_tracker::FeatureTracker tracker({recording.rig.cameras[0]}, {recording.rig.T_bc[0]},
+                                          options);
   TruthKeeper keeper(recording);
   Stamp last = 0;
   for (std::size_t i = 0; i < recording.image_stamps.size(); ++i) {

@@ -151,14 +151,14 @@ sim::RecordingOptions readOptions(const po::variables_map& values) {
   options.faults = readFaults(values);
   options.image = readImageOptions(values);
   const std::string imu_file = values["recorded-imu"].as<std::string>();
-  if (!imu_file.empty()) options.recorded_imu = vins::readImuCsv(imu_file);
+  if (!imu_file.empty()) options.recorded_imu = vins::pipeline::readImuCsv(imu_file);
   return options;
 }
 
 /// The streams of the bag; at equal times their messages come in this order.
 enum Stream : std::size_t { kImu, kGroundTruth, kCamera0, kCamera1 };
 
-std::vector<vins::ScheduledMessage> scheduleOf(const sim::SimulatedRecording& recording) {
+std::vector<vins::pipeline::ScheduledMessage> scheduleOf(const sim::SimulatedRecording& recording) {
   std::vector<std::vector<vins::Stamp>> arrivals(kCamera0 + recording.cameras.size());
   for (const auto& sample : recording.imu) arrivals[kImu].push_back(sample.arrival);
   for (const auto& pose : recording.ground_truth.poses()) {
@@ -167,11 +167,11 @@ std::vector<vins::ScheduledMessage> scheduleOf(const sim::SimulatedRecording& re
   for (std::size_t stream = kCamera0; stream < arrivals.size(); ++stream) {
     arrivals[stream] = recording.image_stamps;
   }
-  return vins::inOrderOfArrival(arrivals);
+  return vins::pipeline::inOrderOfArrival(arrivals);
 }
 
-void write(const sim::SimulatedRecording& recording, const vins::ScheduledMessage& message,
-           vins::BagWriter* bag) {
+void write(const sim::SimulatedRecording& recording,
+           const vins::pipeline::ScheduledMessage& message, vins::pipeline::BagWriter* bag) {
   if (message.stream == kImu) {
     bag->writeImu(message.arrival, recording.imu[message.index].sample);
   } else if (message.stream == kGroundTruth) {
@@ -179,19 +179,20 @@ void write(const sim::SimulatedRecording& recording, const vins::ScheduledMessag
     bag->writeGroundTruth(message.arrival, pose.stamp, pose.T_wb);
   } else {
     const bool is_first = message.stream == kCamera0;
-    bag->writeImage(is_first ? vins::topic::kCamera0 : vins::topic::kCamera1, message.arrival,
-                    message.arrival, recording.render(message.stream - kCamera0, message.index));
+    bag->writeImage(is_first ? vins::pipeline::topic::kCamera0 : vins::pipeline::topic::kCamera1,
+                    message.arrival, message.arrival,
+                    recording.render(message.stream - kCamera0, message.index));
   }
 }
 
 /// False where it was interrupted.
 bool writeMessages(const sim::SimulatedRecording& recording, vins::Interrupt* interrupt,
-                   vins::BagWriter* bag) {
+                   vins::pipeline::BagWriter* bag) {
   const auto messages = scheduleOf(recording);
   const std::size_t image_count = recording.image_stamps.size() * recording.cameras.size();
   auto bar = vins::ProgressBar::onStandardError("rendering", image_count);
   std::size_t images = 0;
-  for (const vins::ScheduledMessage& message : messages) {
+  for (const vins::pipeline::ScheduledMessage& message : messages) {
     if (interrupt->isRequested()) return false;
     write(recording, message, bag);
     if (message.stream >= kCamera0) bar.update(++images);
@@ -229,7 +230,7 @@ vins::ToolExit simulate(const po::variables_map& values) {
   {
     // Before the renderer's threads are made, which take over what is held back.
     vins::Interrupt interrupt;
-    vins::BagWriter writer(bag.string());
+    vins::pipeline::BagWriter writer(bag.string());
     if (!writeMessages(recording, &interrupt, &writer)) {
       std::cerr << "\nsimulate_bag: interrupted; " << bag.string() << " was not written\n";
       return vins::ToolExit::kInterrupted;

@@ -33,9 +33,9 @@ po::options_description describeOptions() {
 }
 
 vins::ToolExit renderAll(const po::variables_map& values) {
-  const auto camera = vins::readCameraFile(values["camera"].as<std::string>());
-  const vins::Chessboard board{values["width"].as<int>(), values["height"].as<int>(),
-                               values["size"].as<double>()};
+  const auto camera = vins::camera_model::readCameraFile(values["camera"].as<std::string>());
+  const vins::camera_model::Chessboard board{values["width"].as<int>(), values["height"].as<int>(),
+                                             values["size"].as<double>()};
   board.validate();
   vins::simulation::ChessboardImageOptions options;
   options.noise = values["noise"].as<double>();

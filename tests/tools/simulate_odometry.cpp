@@ -63,7 +63,7 @@ void addSensorOptions(po::options_description* options) {
 }
 
 void addEstimatorOptions(po::options_description* options) {
-  const vins::EstimatorOptions estimator;
+  const vins::estimator::EstimatorOptions estimator;
   auto add = options->add_options();
   add("window-size", withDefault(estimator.window_size), "keyframes");
   add("keyframe-parallax", withDefault(estimator.keyframe_parallax), "[px]");
@@ -113,8 +113,9 @@ sim::OdometryStudyOptions readOptions(const po::variables_map& values) {
   options.estimator.td = values["assumed-td"].as<double>();
   options.estimator.estimate_td = values["estimate-td"].as<bool>();
   options.estimator.extrinsic =
-      static_cast<vins::ExtrinsicMode>(values["estimate-extrinsic"].as<int>());
-  options.estimator.motion_only = static_cast<vins::MotionOnly>(values["motion-only"].as<int>());
+      static_cast<vins::estimator::ExtrinsicMode>(values["estimate-extrinsic"].as<int>());
+  options.estimator.motion_only =
+      static_cast<vins::estimator::MotionOnly>(values["motion-only"].as<int>());
   const Eigen::Vector3d axis = Eigen::Vector3d(1.0, -1.0, 1.0).normalized();
   const double degree = M_PI / 180.0;
   options.estimator.T_bc.rotation =

@@ -6,7 +6,7 @@
 
 #include "vins_msgs/conversions.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr std::size_t kPointBytes = 3 * sizeof(float);
@@ -96,4 +96,4 @@ visualization_msgs::Marker cameraFrustum(double size) {
   return marker;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -10,7 +10,7 @@
 #include "vins_core/pose.h"
 #include "vins_estimator/estimator.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A state as nav_msgs/Odometry: the pose in `odom`, the twist in `body`, as the message wants it.
 /// Its covariances are of position (world axes) and rotation (body axes), of velocity (body axes).
@@ -29,4 +29,4 @@ void append(const sensor_msgs::PointCloud2& more, std::size_t max_points,
 /// A camera's frustum in its own frame: eight edges, `size` [m] across.
 visualization_msgs::Marker cameraFrustum(double size);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -16,7 +16,7 @@
 #include "vins_msgs/LoopEdge.h"
 #include "vins_msgs/conversions.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr std::size_t kMaxPathPoses = 20000;  // 16 minutes at 20 Hz
@@ -192,4 +192,4 @@ void EstimatorPublisher::publishLoopEdges(const EstimatorResult& result) {
   }
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -10,7 +10,7 @@
 #include "vins_estimator/estimator.h"
 #include "vins_estimator/inertial/propagator.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Frame names of what is published.
 struct EstimatorFrames {
@@ -53,4 +53,4 @@ class EstimatorPublisher {
   tf2_ros::TransformBroadcaster transforms_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

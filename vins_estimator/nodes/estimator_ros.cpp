@@ -7,7 +7,7 @@
 #include "vins_msgs/conversions.h"
 #include "vins_msgs/node_configuration.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr std::size_t kMaxFramesWaiting = 40;  // two seconds at 20 Hz
@@ -268,4 +268,4 @@ void EstimatorRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   for (const Event& event : recent_) status.add("event " + event.code, event.text);
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -21,7 +21,7 @@
 #include "vins_msgs/FeatureFrame.h"
 #include "vins_msgs/LoopMatch.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// The estimator's ROS face, shared by node and nodelet. Callbacks only queue; one worker solves.
 /// An IMU sample goes through the propagator in its own callback, so that odometry at the IMU's
@@ -91,4 +91,4 @@ class EstimatorRos {
   std::thread worker_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -1,6 +1,6 @@
 #include "feature_numbering.h"
 
-namespace vins {
+namespace vins::estimator {
 
 bool FeatureNumbering::take(FeatureFrame* frame) {
   const bool is_new_run = last_sequence_ && frame->sequence < *last_sequence_;
@@ -12,4 +12,4 @@ bool FeatureNumbering::take(FeatureFrame* frame) {
   return is_new_run;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

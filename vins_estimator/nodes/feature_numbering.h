@@ -6,7 +6,7 @@
 #include "vins_core/continued_ids.h"
 #include "vins_core/feature_frame.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Frames of a tracker that may have been started again: it counts tracks from 0 anew, and the
 /// window would take them for the landmarks that had those ids.
@@ -21,4 +21,4 @@ class FeatureNumbering {
   ContinuedIds ids_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

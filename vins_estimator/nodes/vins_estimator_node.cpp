@@ -4,5 +4,5 @@
 #include "vins_msgs/node_main.h"
 
 int main(int argc, char** argv) {
-  return vins_msgs::runNode<vins::EstimatorRos>(argc, argv, "vins_estimator");
+  return vins_msgs::runNode<vins::estimator::EstimatorRos>(argc, argv, "vins_estimator");
 }

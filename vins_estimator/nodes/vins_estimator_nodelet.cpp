@@ -6,7 +6,7 @@
 #include "estimator_ros.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// The estimator in a nodelet manager.
 class EstimatorNodelet : public nodelet::Nodelet {
@@ -23,6 +23,6 @@ class EstimatorNodelet : public nodelet::Nodelet {
   std::unique_ptr<EstimatorRos> estimator_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator
 
-PLUGINLIB_EXPORT_CLASS(vins::EstimatorNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(vins::estimator::EstimatorNodelet, nodelet::Nodelet)

@@ -15,7 +15,7 @@
 #include "vins_estimator/visual/rolling_shutter.h"
 #include "window_tracker.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 InitializerOptions initializerOptions(const EstimatorOptions& options) {
@@ -289,4 +289,4 @@ std::optional<EstimatorResult> Estimator::process() { return implementation_->pr
 void Estimator::setBacklog(int frames) { implementation_->setBacklog(frames); }
 void Estimator::reset() { implementation_->reset(); }
 
-}  // namespace vins
+}  // namespace vins::estimator

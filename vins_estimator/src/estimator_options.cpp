@@ -10,7 +10,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr Range kDensity{1e-9, 100.0};
@@ -239,4 +239,4 @@ ImuNoise readImuNoise(const Parameters& parameters) {
   return noise;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -12,7 +12,7 @@
 #include "vins_estimator/window/outlier_gate.h"
 #include "vins_estimator/window/window_start.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr int kMinMatches = 15;  // of a loop that is worth its place in the window
@@ -82,7 +82,7 @@ void WindowTracker::start(const Initialization& initialization) {
 void WindowTracker::addLoop(const LoopMatch& match) {
   // Features that are found again by their looks are placed about twice as badly as tracked ones.
   constexpr double kMatchNoise = 2.0;
-  if (vins::addLoop(match, kMatchNoise, &window_)) loop_is_new_ = true;
+  if (vins::estimator::addLoop(match, kMatchNoise, &window_)) loop_is_new_ = true;
 }
 
 NavState WindowTracker::append(const FrameMeasurements& measurements, bool stands_still) {
@@ -213,4 +213,4 @@ void WindowTracker::keepFirstFrames(std::uint32_t sequence, EstimatorResult* res
   for (std::size_t i = 0; i + 1 < window_.frames.size(); ++i) makeKeyframe(i, sequence, result);
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -12,7 +12,7 @@
 #include "vins_estimator/window/sliding_window.h"
 #include "vins_estimator/window/window_solver.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Follows the body once the first states are known: takes frames into the window, adjusts it, and
 /// slides it on.
@@ -62,4 +62,4 @@ class WindowTracker {
   bool loop_is_new_ = false;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

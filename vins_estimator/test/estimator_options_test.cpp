@@ -9,7 +9,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 const char* const kHead = "%YAML:1.0\n";
@@ -208,4 +208,4 @@ TEST(EstimatorOptions, PrintsALinePerOption) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

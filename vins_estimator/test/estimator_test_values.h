@@ -11,7 +11,7 @@
 #include "vins_core/so3.h"
 #include "vins_estimator/inertial/nav_state.h"
 
-namespace vins::testing {
+namespace vins::estimator::testing {
 
 /// Normal numbers, the same on every platform that has IEEE arithmetic.
 class Random {
@@ -61,4 +61,4 @@ inline std::vector<ImuSample> wavingSamples(double duration, double rate) {
   return samples;
 }
 
-}  // namespace vins::testing
+}  // namespace vins::estimator::testing

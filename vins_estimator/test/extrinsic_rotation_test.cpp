@@ -5,7 +5,7 @@
 #include "estimator_test_values.h"
 #include "synthetic_flight.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Quaterniond;
@@ -117,4 +117,4 @@ TEST(TurnCalibrator, WaitsAndSaysSoWhereNothingTurns) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

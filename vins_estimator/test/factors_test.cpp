@@ -9,14 +9,14 @@
 #include "vins_estimator/factors/upright_factor.h"
 #include "vins_estimator/factors/zero_motion_factor.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using testing::numericJacobian;
 using testing::Random;
+using vins::testing::numericJacobian;
 
 const Vector3d kGravity(0.0, 0.0, -9.81);
 const ImuNoise kNoise{2.0e-3, 1.7e-4, 3.0e-3, 1.9e-5, 9.81};
@@ -316,4 +316,4 @@ TEST(PoseManifold, MinusUndoesPlus) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

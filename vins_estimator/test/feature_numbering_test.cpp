@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 FeatureFrame frameOf(std::uint32_t sequence, const std::vector<std::int64_t>& ids) {
@@ -43,4 +43,4 @@ TEST(FeatureNumbering, TracksOfANewRunAreNotThoseOfTheOldOne) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

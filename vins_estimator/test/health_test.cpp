@@ -10,7 +10,7 @@
 #include "vins_estimator/health/rest_check.h"
 #include "vins_estimator/health/track_watch.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -180,4 +180,4 @@ TEST(RestCheck, DoesNotTrustAFewTracks) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

@@ -5,7 +5,7 @@
 #include "synthetic_flight.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -180,4 +180,4 @@ TEST(Initializer, ChecksOptions) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

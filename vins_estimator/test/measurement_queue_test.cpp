@@ -9,7 +9,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr Stamp kMs = 1'000'000;
@@ -311,4 +311,4 @@ TEST(MeasurementQueue, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

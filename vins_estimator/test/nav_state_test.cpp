@@ -4,7 +4,7 @@
 
 #include "estimator_test_values.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 TEST(NavState, MinusUndoesPlus) {
@@ -45,4 +45,4 @@ TEST(WindowState, KeepsItsFirstEstimateOnceFixed) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

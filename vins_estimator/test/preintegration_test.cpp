@@ -6,7 +6,7 @@
 #include "estimator_test_values.h"
 #include "vins_core/testing/numeric_jacobian.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -61,7 +61,7 @@ TEST(Preintegration, BiasJacobiansAreThoseOfNumericDifferences) {
   const auto f = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
     return errors(integrated(samples, kAccBias_ + d.head<3>(), kGyrBias_ + d.tail<3>()), imu);
   };
-  const Eigen::MatrixXd numeric = testing::numericJacobian(f, 6);
+  const Eigen::MatrixXd numeric = vins::testing::numericJacobian(f, 6);
   EXPECT_LT((imu.jacobian().block<9, 6>(0, kAccBias) - numeric).norm(), 1e-9 * numeric.norm());
 }
 
@@ -198,4 +198,4 @@ TEST(Preintegration, AGapIsUncertainButCanBeWeighted) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

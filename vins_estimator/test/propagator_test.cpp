@@ -12,7 +12,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/testing/numeric_jacobian.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -106,7 +106,7 @@ TEST(Propagator, TheCovarianceFollowsTheErrors) {
     }
     return minus(a->state, b->state);
   };
-  const Eigen::MatrixXd J = testing::numericJacobian(errorAfter, 15);
+  const Eigen::MatrixXd J = vins::testing::numericJacobian(errorAfter, 15);
   ImuNoise quiet{1e-12, 1e-12, 1e-12, 1e-12, 9.81};
   Propagator propagator(quiet);
   Matrix15d initial = Matrix15d::Zero();
@@ -205,4 +205,4 @@ TEST(Propagator, ASampleTakesMicroseconds) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

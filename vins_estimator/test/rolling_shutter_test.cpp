@@ -5,7 +5,7 @@
 #include "vins_core/pose.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -75,4 +75,4 @@ TEST(RollingShutter, LeavesOutWhatHasNoVelocity) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

@@ -5,7 +5,7 @@
 #include "synthetic_flight.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -97,4 +97,4 @@ TEST(Stillness, ChecksOptions) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

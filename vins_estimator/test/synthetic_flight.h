@@ -15,7 +15,7 @@
 #include "vins_core/so3.h"
 #include "vins_estimator/inertial/measurement_queue.h"
 
-namespace vins::testing {
+namespace vins::estimator::testing {
 
 /// Where the body is at a time [s].
 using Motion = std::function<Pose(double t)>;
@@ -146,4 +146,4 @@ inline SyntheticFlight movedWorld(SyntheticFlight flight, double yaw,
   return flight;
 }
 
-}  // namespace vins::testing
+}  // namespace vins::estimator::testing

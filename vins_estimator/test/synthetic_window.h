@@ -6,7 +6,7 @@
 #include "vins_estimator/window/sliding_window.h"
 #include "vins_estimator/window/window_start.h"
 
-namespace vins::testing {
+namespace vins::estimator::testing {
 
 /// A window whose states, landmarks and measurements agree exactly: waving motion, points ahead of
 /// the camera, each seen in every frame from `begin` to `end`.
@@ -79,4 +79,4 @@ SyntheticWindow makeWindow(int frames, int landmarks, double noise, VisibilityOf
   return result;
 }
 
-}  // namespace vins::testing
+}  // namespace vins::estimator::testing

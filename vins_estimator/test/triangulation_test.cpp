@@ -5,7 +5,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -112,4 +112,4 @@ TEST(Triangulation, ChecksOptions) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

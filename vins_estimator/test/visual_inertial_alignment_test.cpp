@@ -5,7 +5,7 @@
 #include "synthetic_flight.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -99,4 +99,4 @@ TEST(Alignment, ChecksOptions) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

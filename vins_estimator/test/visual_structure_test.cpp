@@ -6,7 +6,7 @@
 #include "vins_core/input_error.h"
 #include "vins_estimator/initialization/five_point.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -161,4 +161,4 @@ TEST(VisualStructure, ChecksOptions) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

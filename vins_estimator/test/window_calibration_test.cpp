@@ -10,16 +10,16 @@
 #include "vins_estimator/window/window_solver.h"
 #include "vins_estimator/window/window_system.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using testing::makeWindow;
-using testing::numericJacobian;
 using testing::SyntheticWindow;
 using testing::Visibility;
+using vins::testing::numericJacobian;
 
 constexpr double kHuber = 1e9;  // no measurement is an outlier here
 
@@ -268,4 +268,4 @@ TEST(MotionOnly, BringsTheNewestFramesBackAndMovesNothingElse) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

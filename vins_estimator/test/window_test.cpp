@@ -7,7 +7,7 @@
 #include "vins_estimator/window/window_solver.h"
 #include "vins_estimator/window/window_system.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Index;
@@ -212,4 +212,4 @@ TEST(OutlierGate, TakesTheWrongObservationOnly) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::estimator

@@ -10,7 +10,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 bool holdsRecording(const fs::path& folder) {
@@ -50,7 +50,7 @@ fs::path findRecording(const fs::path& path) {
 }
 
 /// Appends the images of a camera to the recording.
-void readCamera(const fs::path& camera, MissingImages missing, AslRecording* recording) {
+void readCameraFolder(const fs::path& camera, MissingImages missing, AslRecording* recording) {
   std::vector<ImageFile> images;
   readCsvFile((camera / "data.csv").string(), 1, [&](const CsvRow& row) {
     const fs::path path = camera / "data" / row.fields[0];
@@ -91,8 +91,8 @@ AslRecording readAslFolder(const std::string& path, MissingImages missing) {
   const fs::path folder = findRecording(path);
   AslRecording recording;
   recording.folder = folder.string();
-  readCamera(folder / "cam0", missing, &recording);
-  if (fs::is_directory(folder / "cam1")) readCamera(folder / "cam1", missing, &recording);
+  readCameraFolder(folder / "cam0", missing, &recording);
+  if (fs::is_directory(folder / "cam1")) readCameraFolder(folder / "cam1", missing, &recording);
   recording.imu = readImuCsv((folder / "imu0" / "data.csv").string());
   readGroundTruth(folder, &recording);
   return recording;
@@ -110,4 +110,4 @@ std::vector<ImuSample> readImuCsv(const std::string& path) {
   return samples;
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

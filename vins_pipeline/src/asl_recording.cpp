@@ -11,7 +11,7 @@
 #include "vins_pipeline/message_schedule.h"
 #include "vins_pipeline/recording.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 /// At equal times messages come in this order, then the cameras.
@@ -138,4 +138,4 @@ std::unique_ptr<Recording> openAslRecording(const std::string& folder,
   return std::make_unique<AslFolderRecording>(folder, selection);
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

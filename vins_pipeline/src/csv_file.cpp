@@ -7,7 +7,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 std::string withoutBlanks(const std::string& text) {
@@ -88,4 +88,4 @@ void readCsvFile(const std::string& path, std::size_t field_count,
   if (!before) throw InputError(path + ": no data in it");
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

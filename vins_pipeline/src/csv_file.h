@@ -6,7 +6,7 @@
 
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// One line of a csv file: a stamp and the fields behind it, without surrounding blanks.
 struct CsvRow {
@@ -23,4 +23,4 @@ struct CsvRow {
 void readCsvFile(const std::string& path, std::size_t field_count,
                  const std::function<void(const CsvRow&)>& use);
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -25,25 +25,30 @@ FrameRecord::FrameRecord()
           "sigma_vz [m/s]\n") {}
 
 void FrameRecord::add(const PipelineResult& result) {
-  const TrackerStatistics& tracker = result.tracker;
+  const feature_tracker::TrackerStatistics& tracker = result.tracker;
   char line[160];
   std::snprintf(line, sizeof(line), "%lld,%d,%d,%d,%d,%.3f\n", static_cast<long long>(result.stamp),
                 tracker.before, tracker.tracked, tracker.inliers, tracker.detected,
                 tracker.mean_track_length);
   tracker_csv_ += line;
-  for (const EstimatorResult& estimate : result.estimates) {
+  for (const estimator::EstimatorResult& estimate : result.estimates) {
     if (estimate.odometry) add(*estimate.odometry, estimate.statistics);
   }
 }
 
-void FrameRecord::add(const Odometry& odometry, const EstimatorStatistics& statistics) {
+void FrameRecord::add(const estimator::Odometry& odometry,
+                      const estimator::EstimatorStatistics& statistics) {
   const Eigen::Matrix3d R_wb = odometry.state.T_wb.rotation.toRotationMatrix();
-  const Matrix15d& P = odometry.covariance;
-  const Eigen::Vector3d position = deviations(P.block<3, 3>(kPosition, kPosition));
+  const estimator::Matrix15d& P = odometry.covariance;
+  const Eigen::Vector3d position =
+      deviations(P.block<3, 3>(estimator::kPosition, estimator::kPosition));
   // The rotation's error is one of the body's axes.
   const Eigen::Vector3d turn =
-      deviations(R_wb * P.block<3, 3>(kRotation, kRotation) * R_wb.transpose()) / kDegree;
-  const Eigen::Vector3d velocity = deviations(P.block<3, 3>(kVelocity, kVelocity));
+      deviations(R_wb * P.block<3, 3>(estimator::kRotation, estimator::kRotation) *
+                 R_wb.transpose()) /
+      kDegree;
+  const Eigen::Vector3d velocity =
+      deviations(P.block<3, 3>(estimator::kVelocity, estimator::kVelocity));
   char line[320];
   std::snprintf(line, sizeof(line), "%lld,%u,%d,%d,%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f\n",
                 static_cast<long long>(odometry.stamp), odometry.sequence, statistics.landmarks,
@@ -53,4 +58,4 @@ void FrameRecord::add(const Odometry& odometry, const EstimatorStatistics& stati
   estimator_csv_ += line;
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

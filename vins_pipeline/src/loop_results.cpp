@@ -7,20 +7,20 @@
 #include "pose_graph/graph/heading.h"
 #include "vins_core/trajectory_file.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 /// map <- odometry's world at a time, by the keyframe before it or else the first.
-Pose driftAt(const SequencePath& path, Stamp stamp) {
+Pose driftAt(const pose_graph::SequencePath& path, Stamp stamp) {
   if (path.keyframes.empty()) return {};
   auto after = std::upper_bound(
       path.keyframes.begin(), path.keyframes.end(), stamp,
-      [](Stamp time, const KeyframeVertex& keyframe) { return time < keyframe.stamp; });
+      [](Stamp time, const pose_graph::KeyframeVertex& keyframe) { return time < keyframe.stamp; });
   if (after != path.keyframes.begin()) --after;
-  return driftOf(after->T_mb, after->T_wb);
+  return pose_graph::driftOf(after->T_mb, after->T_wb);
 }
 
-std::string csvLine(const KeyframeVertex& keyframe) {
+std::string csvLine(const pose_graph::KeyframeVertex& keyframe) {
   const Pose& T = keyframe.T_mb;
   char line[256];
   std::snprintf(line, sizeof(line), "%lld,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,\n",
@@ -33,16 +33,16 @@ std::string csvLine(const KeyframeVertex& keyframe) {
 
 void LoopResults::add(const PipelineResult& result) {
   for (const StampedPose& pose : result.corrected) live_ += toTumLine(pose) + "\n";
-  for (const EstimatorResult& estimate : result.estimates) {
+  for (const estimator::EstimatorResult& estimate : result.estimates) {
     if (!estimate.odometry) continue;
-    const Odometry& odometry = *estimate.odometry;
+    const estimator::Odometry& odometry = *estimate.odometry;
     frames_.push_back({odometry.sequence, {odometry.stamp, odometry.state.T_wb}});
   }
 }
 
-std::string LoopResults::finalPath(const std::vector<SequencePath>& paths) const {
-  std::map<SequenceNumber, const SequencePath*> by_sequence;
-  for (const SequencePath& path : paths) by_sequence[path.sequence] = &path;
+std::string LoopResults::finalPath(const std::vector<pose_graph::SequencePath>& paths) const {
+  std::map<pose_graph::SequenceNumber, const pose_graph::SequencePath*> by_sequence;
+  for (const pose_graph::SequencePath& path : paths) by_sequence[path.sequence] = &path;
   std::string text;
   for (const Frame& frame : frames_) {
     const auto path = by_sequence.find(frame.sequence);
@@ -52,13 +52,13 @@ std::string LoopResults::finalPath(const std::vector<SequencePath>& paths) const
   return text;
 }
 
-std::string LoopResults::vinsMonoCsv(const std::vector<SequencePath>& paths) {
+std::string LoopResults::vinsMonoCsv(const std::vector<pose_graph::SequencePath>& paths) {
   std::string text;
-  for (const SequencePath& path : paths) {
+  for (const pose_graph::SequencePath& path : paths) {
     if (path.sequence < 0) continue;
-    for (const KeyframeVertex& keyframe : path.keyframes) text += csvLine(keyframe);
+    for (const pose_graph::KeyframeVertex& keyframe : path.keyframes) text += csvLine(keyframe);
   }
   return text;
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vins {
+namespace vins::pipeline {
 
 std::vector<ScheduledMessage> inOrderOfArrival(const std::vector<std::vector<Stamp>>& arrivals) {
   std::vector<ScheduledMessage> messages;
@@ -17,4 +17,4 @@ std::vector<ScheduledMessage> inOrderOfArrival(const std::vector<std::vector<Sta
   return messages;
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -6,7 +6,7 @@
 #include "feature_tracker/mask_file.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 constexpr Stamp kJump = 1'000'000'000;  ///< stamps that fall by more begin a new run [ns]
@@ -17,15 +17,16 @@ void append(std::vector<Event>* all, const std::vector<Event>& events) {
   all->insert(all->end(), events.begin(), events.end());
 }
 
-std::optional<PictureStore> makePictures(const PoseGraphConfiguration& loops) {
+std::optional<pose_graph::PictureStore> makePictures(
+    const pose_graph::PoseGraphConfiguration& loops) {
   if (!loops.saves_images) return std::nullopt;
-  return PictureStore(static_cast<std::size_t>(loops.options.thinning.max_keyframes));
+  return pose_graph::PictureStore(static_cast<std::size_t>(loops.options.thinning.max_keyframes));
 }
 
-std::unique_ptr<PoseGraph> makePoseGraph(const PipelineOptions& options) {
+std::unique_ptr<pose_graph::PoseGraph> makePoseGraph(const PipelineOptions& options) {
   if (!options.loops.is_on || !options.places.vocabulary) return nullptr;
-  return std::make_unique<PoseGraph>(options.loops.options, options.cameras.front(),
-                                     options.places);
+  return std::make_unique<pose_graph::PoseGraph>(options.loops.options, options.cameras.front(),
+                                                 options.places);
 }
 
 void add(const Duration& more, Duration* sum) {
@@ -43,13 +44,14 @@ void addPart(const char* stage, double seconds, PipelineResult* result) {
 PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings) {
   const Parameters parameters = Parameters::load(path);
   PipelineOptions options;
-  options.cameras = {readCamera(parameters)};
-  options.tracker = readFeatureTrackerOptions(parameters);
-  options.estimator = readEstimatorOptions(parameters);
-  options.mask = readMaskFile(options.tracker.mask_file, options.cameras[0]->imageSize());
+  options.cameras = {camera_model::readCamera(parameters)};
+  options.tracker = feature_tracker::readFeatureTrackerOptions(parameters);
+  options.estimator = estimator::readEstimatorOptions(parameters);
+  options.mask =
+      feature_tracker::readMaskFile(options.tracker.mask_file, options.cameras[0]->imageSize());
   options.imu_topic = parameters.textOr("imu_topic", options.imu_topic);
   options.image_topics[0] = parameters.textOr("image_topic", options.image_topics[0]);
-  options.loops = readPoseGraphConfiguration(parameters);
+  options.loops = pose_graph::readPoseGraphConfiguration(parameters);
   if (options.loops.is_on && options.loops.loads_map) options.map = options.loops.map_file;
   // Of VINS-Mono, and of no meaning here.
   parameters.know({"output_path", "visualize_imu_forward", "visualize_camera_size"});
@@ -118,7 +120,7 @@ std::vector<ImuSample> Pipeline::samplesUpTo(Stamp stamp) {
 
 void Pipeline::track(const WaitingImage& image, PipelineResult* result) {
   const StopWatch watch;
-  FeatureTrackerResult tracked =
+  feature_tracker::FeatureTrackerResult tracked =
       tracker_.track({image.image}, image.stamp, samplesUpTo(image.stamp));
   result->durations.emplace_back("tracker", watch.elapsed());
   result->tracker = tracked.statistics;
@@ -133,7 +135,7 @@ void Pipeline::estimate(PipelineResult* result) {
   Duration estimating, closing;
   while (true) {
     const StopWatch watch;
-    std::optional<EstimatorResult> estimate = estimator_.process();
+    std::optional<estimator::EstimatorResult> estimate = estimator_.process();
     add(watch.elapsed(), &estimating);
     if (!estimate) break;
     append(&result->events, estimate->events);
@@ -146,17 +148,17 @@ void Pipeline::estimate(PipelineResult* result) {
   }
   if (result->estimates.empty()) return;
   result->durations.emplace_back("estimator", estimating);
-  for (const EstimatorResult& estimate : result->estimates) {
-    const EstimatorStatistics& s = estimate.statistics;
+  for (const estimator::EstimatorResult& estimate : result->estimates) {
+    const estimator::EstimatorStatistics& s = estimate.statistics;
     addPart("estimator/solve", s.solve_seconds, result);
     addPart("estimator/marginalize", s.marginalize_seconds, result);
   }
   if (pose_graph_) result->durations.emplace_back("pose_graph", closing);
 }
 
-void Pipeline::closeLoops(const EstimatorResult& estimate, PipelineResult* result) {
+void Pipeline::closeLoops(const estimator::EstimatorResult& estimate, PipelineResult* result) {
   for (const LoopEdge& edge : estimate.loop_edges) {
-    const LoopEdgeResult refined = pose_graph_->addLoopEdge(edge);
+    const pose_graph::LoopEdgeResult refined = pose_graph_->addLoopEdge(edge);
     append(&result->events, refined.events);
     addPart("pose_graph/optimize", refined.optimize_seconds, result);
   }
@@ -169,7 +171,7 @@ void Pipeline::closeLoops(const EstimatorResult& estimate, PipelineResult* resul
 
 void Pipeline::addKeyframe(const Keyframe& keyframe, PipelineResult* result) {
   const cv::Mat image = recent_images_.find(keyframe.stamp);
-  const PoseGraphResult added = pose_graph_->addKeyframe(keyframe, image);
+  const pose_graph::PoseGraphResult added = pose_graph_->addKeyframe(keyframe, image);
   if (pictures_ && added.is_kept && !image.empty()) pictures_->add(keyframe.id, image);
   append(&result->events, added.events);
   if (added.match && refines_loops_) estimator_.addLoopMatch(*added.match);
@@ -179,4 +181,4 @@ void Pipeline::addKeyframe(const Keyframe& keyframe, PipelineResult* result) {
   addPart("pose_graph/optimize", added.optimize_seconds, result);
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -4,7 +4,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 void RecordingSelection::validate() const {
   std::ostringstream message;
@@ -17,4 +17,4 @@ void RecordingSelection::validate() const {
   if (!message.str().empty()) throw InputError(message.str());
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -9,7 +9,7 @@
 
 #include <sys/resource.h>
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 double cpuSeconds() {
@@ -136,4 +136,4 @@ std::string RunRecord::timingTable() const {
   return out.str();
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -4,10 +4,10 @@
 
 #include "vins_core/trajectory_file.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
-std::string csvLine(const Odometry& odometry) {
+std::string csvLine(const estimator::Odometry& odometry) {
   const Pose& T = odometry.state.T_wb;
   const Eigen::Vector3d& v = odometry.state.v_w;
   char line[320];
@@ -32,19 +32,19 @@ void RunResults::add(const PipelineResult& result) {
   if (!first_image_) first_image_ = result.stamp;
   ++images_;
   features_ = result.frame ? result.frame->observations.size() : 0;
-  for (const EstimatorResult& estimate : result.estimates) add(estimate);
+  for (const estimator::EstimatorResult& estimate : result.estimates) add(estimate);
   for (const Event& event : result.events) {
     if (event.severity != Severity::kInfo) ++warnings_[event.code];
   }
 }
 
-void RunResults::add(const EstimatorResult& estimate) {
+void RunResults::add(const estimator::EstimatorResult& estimate) {
   ++frames_;
   status_ = estimate.status;
   if (estimate.odometry) add(*estimate.odometry);
 }
 
-void RunResults::add(const Odometry& odometry) {
+void RunResults::add(const estimator::Odometry& odometry) {
   ++odometries_;
   if (!first_odometry_) first_odometry_ = odometry.stamp;
   vio_live_ += toTumLine({odometry.stamp, odometry.state.T_wb}) + "\n";
@@ -75,4 +75,4 @@ std::string RunResults::state() const {
   return std::to_string(features_) + " features, " + toString(status_);
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

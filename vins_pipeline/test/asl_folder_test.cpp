@@ -11,7 +11,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 void writeFile(const fs::path& path, const std::string& text) {
@@ -141,7 +141,7 @@ TEST_F(AslFolder, MissingFilesAndFoldersAreNamed) {
 }
 
 TEST(AslFolderOfEuroc, IsReadWhole) {
-  const std::string path = testing::sharedData("euroc_v101_micro");
+  const std::string path = vins::testing::sharedData("euroc_v101_micro");
   VINS_SKIP_WITHOUT(path);
   // This copy lists four images of cam1 that are not there.
   const AslRecording recording = readAslFolder(path, MissingImages::kSkip);
@@ -154,4 +154,4 @@ TEST(AslFolderOfEuroc, IsReadWhole) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -19,7 +19,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 struct Outcome {
@@ -98,7 +98,7 @@ std::map<std::string, Content> contentOfBag(const std::string& path) {
 class RealRecording : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(RealRecording, BecomesABagWithTheSameCountsAndStamps) {
-  const std::string folder = testing::sharedData(GetParam());
+  const std::string folder = vins::testing::sharedData(GetParam());
   VINS_SKIP_WITHOUT(folder);
   const std::string bag = (fs::path(::testing::TempDir()) / GetParam()).string() + ".bag";
   const Outcome outcome = convert(folder + " " + bag + " --skip-missing-images");
@@ -133,4 +133,4 @@ TEST(AslToBag, TellsWhatIsWrongAndLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -14,7 +14,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 const std::string kPath = (fs::path(::testing::TempDir()) / "bag_writer_test.bag").string();
@@ -84,4 +84,4 @@ TEST(BagWriter, RefusesBadStampsImagesAndPlaces) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -10,7 +10,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 /// Numbers of a table's last line.
@@ -28,7 +28,7 @@ std::size_t linesOf(const std::string& csv) {
   return static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n'));
 }
 
-PipelineResult resultWith(const Odometry& odometry) {
+PipelineResult resultWith(const estimator::Odometry& odometry) {
   PipelineResult result;
   result.stamp = odometry.stamp;
   result.tracker.before = 90;
@@ -36,7 +36,7 @@ PipelineResult resultWith(const Odometry& odometry) {
   result.tracker.inliers = 70;
   result.tracker.detected = 30;
   result.tracker.mean_track_length = 12.5;
-  EstimatorResult estimate;
+  estimator::EstimatorResult estimate;
   estimate.odometry = odometry;
   estimate.statistics.landmarks = 55;
   estimate.statistics.outliers = 2;
@@ -47,7 +47,7 @@ PipelineResult resultWith(const Odometry& odometry) {
 
 TEST(FrameRecord, WritesALineForEachImageAndOdometry) {
   FrameRecord record;
-  Odometry odometry;
+  estimator::Odometry odometry;
   odometry.stamp = 1'600'000'000'000'000'000;
   odometry.sequence = 3;
   record.add(resultWith(odometry));
@@ -66,13 +66,13 @@ TEST(FrameRecord, WritesALineForEachImageAndOdometry) {
 }
 
 TEST(FrameRecord, DeviationsAreThoseOfTheWorldsAxes) {
-  Odometry odometry;
+  estimator::Odometry odometry;
   // The body's x axis points up: what is uncertain about it is yaw.
   odometry.state.T_wb.rotation = Eigen::Quaterniond(so3::exp({0.0, -M_PI / 2.0, 0.0}));
-  odometry.covariance.diagonal()[kPosition] = 0.04;
-  odometry.covariance.diagonal()[kPosition + 2] = 0.09;
-  odometry.covariance.diagonal()[kRotation] = 0.01;
-  odometry.covariance.diagonal()[kVelocity + 1] = 0.25;
+  odometry.covariance.diagonal()[estimator::kPosition] = 0.04;
+  odometry.covariance.diagonal()[estimator::kPosition + 2] = 0.09;
+  odometry.covariance.diagonal()[estimator::kRotation] = 0.01;
+  odometry.covariance.diagonal()[estimator::kVelocity + 1] = 0.25;
   FrameRecord record;
   record.add(resultWith(odometry));
   const std::vector<double> row = lastRow(record.estimatorCsv());
@@ -87,12 +87,12 @@ TEST(FrameRecord, DeviationsAreThoseOfTheWorldsAxes) {
 }
 
 TEST(FrameRecord, RoundingBelowZeroIsNoDeviation) {
-  Odometry odometry;
-  odometry.covariance.diagonal()[kPosition] = -1e-18;
+  estimator::Odometry odometry;
+  odometry.covariance.diagonal()[estimator::kPosition] = -1e-18;
   FrameRecord record;
   record.add(resultWith(odometry));
   EXPECT_EQ(lastRow(record.estimatorCsv())[5], 0.0);
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

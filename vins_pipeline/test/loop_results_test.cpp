@@ -7,7 +7,7 @@
 #include "vins_core/heading.h"
 #include "vins_core/trajectory_file.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 constexpr Stamp kSecond = 1'000'000'000;
@@ -15,11 +15,11 @@ constexpr Stamp kSecond = 1'000'000'000;
 Pose poseAt(double x) { return {yawRotation(0.1 * x), {x, 0.0, 1.0}}; }
 
 PipelineResult frameAt(Stamp stamp, std::uint32_t sequence, double x) {
-  Odometry odometry;
+  estimator::Odometry odometry;
   odometry.stamp = stamp;
   odometry.sequence = sequence;
   odometry.state.T_wb = poseAt(x);
-  EstimatorResult estimate;
+  estimator::EstimatorResult estimate;
   estimate.odometry = odometry;
   PipelineResult result;
   result.estimates = {estimate};
@@ -27,7 +27,7 @@ PipelineResult frameAt(Stamp stamp, std::uint32_t sequence, double x) {
   return result;
 }
 
-KeyframeVertex keyframeAt(Stamp stamp, double x, const Pose& T_mw) {
+pose_graph::KeyframeVertex keyframeAt(Stamp stamp, double x, const Pose& T_mw) {
   return {stamp, 0, stamp, poseAt(x), T_mw * poseAt(x)};
 }
 
@@ -54,7 +54,7 @@ class LoopResultsTest : public ::testing::Test {
   const Pose first_{yawRotation(0.3), {1.0, 2.0, 3.0}};
   const Pose second_{yawRotation(-0.4), {-1.0, 0.5, 0.0}};
   LoopResults results_;
-  std::vector<SequencePath> paths_;
+  std::vector<pose_graph::SequencePath> paths_;
 };
 
 TEST_F(LoopResultsTest, LiveIsWhatWasKnownThen) {
@@ -88,4 +88,4 @@ TEST_F(LoopResultsTest, KeyframesAreWrittenInTheFormOfVinsMono) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

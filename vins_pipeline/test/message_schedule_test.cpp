@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 TEST(MessageSchedule, OrdersByTimeThenStreamThenIndex) {
@@ -16,4 +16,4 @@ TEST(MessageSchedule, OrdersByTimeThenStreamThenIndex) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -11,7 +11,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 constexpr char kConfig[] = "../config/euroc/euroc_config.yaml";
@@ -115,7 +115,7 @@ TEST(PipelineOptions, TheConfigurationOfEurocIsKnownKeyByKey) {
   for (const std::string& warning : warnings) ADD_FAILURE() << warning;
   EXPECT_EQ(read.imu_topic, "/imu0");
   EXPECT_EQ(read.image_topics, std::vector<std::string>{"/cam0/image_raw"});
-  EXPECT_EQ(read.cameras.at(0)->imageSize(), (ImageSize{752, 480}));
+  EXPECT_EQ(read.cameras.at(0)->imageSize(), (camera_model::ImageSize{752, 480}));
   EXPECT_EQ(read.estimator.imu.accelerometer_noise, 2.0e-3);
   EXPECT_EQ(read.tracker.frequency, 0.0);
   EXPECT_TRUE(read.mask.empty());
@@ -134,4 +134,4 @@ TEST(PipelineOptions, UnknownKeysAndMissingFilesAreNamed) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

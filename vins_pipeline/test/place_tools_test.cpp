@@ -16,7 +16,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 const char* const kPattern = " --pattern ../support_files/brief_pattern.yml ";
@@ -67,7 +67,7 @@ TEST_F(PlaceTools, TrainsTheSameVocabularyAgain) {
   EXPECT_NE(first.output.find("6 images"), std::string::npos) << first.output;
   ASSERT_EQ(run("train_vocabulary", input + path("b.voc")).exit_code, 0);
   ASSERT_EQ(run("train_vocabulary", input + path("c.voc") + " --seed 2").exit_code, 0);
-  const Vocabulary vocabulary = readVocabulary(path("a.voc"));
+  const pose_graph::Vocabulary vocabulary = pose_graph::readVocabulary(path("a.voc"));
   EXPECT_EQ(vocabulary.branching(), 5);
   EXPECT_GT(vocabulary.wordCount(), 100u);
   EXPECT_EQ(textOf(path("a.voc")), textOf(path("b.voc")));
@@ -77,11 +77,11 @@ TEST_F(PlaceTools, TrainsTheSameVocabularyAgain) {
 TEST_F(PlaceTools, TrainsOnFewerDescriptorsWhereAsked) {
   const std::string input = path("images") + kPattern + "--max-descriptors 300 -o " + path("a.voc");
   ASSERT_EQ(run("train_vocabulary", input + " --fewest-to-split 2").exit_code, 0);
-  EXPECT_LE(readVocabulary(path("a.voc")).wordCount(), 300u);
+  EXPECT_LE(pose_graph::readVocabulary(path("a.voc")).wordCount(), 300u);
 }
 
 TEST_F(PlaceTools, TrainsOnRecordings) {
-  const std::string recording = testing::sharedData("euroc_v101_micro");
+  const std::string recording = vins::testing::sharedData("euroc_v101_micro");
   VINS_SKIP_WITHOUT(recording);
   const Outcome outcome = run("train_vocabulary", recording + " " + path("images") + "/0.png" +
                                                       kPattern + "--every 1 -o " + path("a.voc"));
@@ -106,7 +106,7 @@ TEST_F(PlaceTools, SayWhatIsWrong) {
 }
 
 TEST_F(PlaceTools, EvaluateARecording) {
-  const std::string recording = testing::sharedData("euroc_v101_micro");
+  const std::string recording = vins::testing::sharedData("euroc_v101_micro");
   VINS_SKIP_WITHOUT(recording);
   const Outcome outcome =
       run("evaluate_places", "--config ../config/euroc/euroc_config.yaml --recording " + recording +
@@ -121,4 +121,4 @@ TEST_F(PlaceTools, EvaluateARecording) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -21,7 +21,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 constexpr Stamp kMs = 1'000'000;
@@ -243,7 +243,7 @@ TEST_F(RecordingTest, BrokenBagsAreNamed) {
 }
 
 TEST_F(RecordingTest, AnAslFolderIsTheSameStream) {
-  const std::string folder = testing::sharedData("euroc_v101_micro");
+  const std::string folder = vins::testing::sharedData("euroc_v101_micro");
   VINS_SKIP_WITHOUT(folder);
   RecordingSelection selection;
   selection.start = 1.0;
@@ -265,4 +265,4 @@ TEST_F(RecordingTest, AnAslFolderIsTheSameStream) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

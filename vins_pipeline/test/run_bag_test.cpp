@@ -18,7 +18,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 const char* const kConfig = "../config/euroc/euroc_config.yaml";
@@ -170,7 +170,7 @@ TEST_F(RunBag, HelpNamesExitCodes) {
 }
 
 TEST_F(RunBag, TwoRunsGiveTheSameBytes) {
-  const std::string flight = testing::sharedData("euroc_mh01_flight");
+  const std::string flight = vins::testing::sharedData("euroc_mh01_flight");
   VINS_SKIP_WITHOUT(flight);
   const std::string arguments = std::string(kConfig) + " " + flight + " --duration 8 --out ";
   const Outcome first = run(arguments + path("first").string());
@@ -183,7 +183,7 @@ TEST_F(RunBag, TwoRunsGiveTheSameBytes) {
 }
 
 TEST_F(RunBag, AnInterruptedRunWritesWhatItHas) {
-  const std::string flight = testing::sharedData("euroc_mh01_flight");
+  const std::string flight = vins::testing::sharedData("euroc_mh01_flight");
   VINS_SKIP_WITHOUT(flight);
   const Outcome outcome =
       run(std::string(kConfig) + " " + flight + " --out " + path("out").string(), "10 %");
@@ -194,4 +194,4 @@ TEST_F(RunBag, AnInterruptedRunWritesWhatItHas) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

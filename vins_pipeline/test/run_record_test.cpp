@@ -6,7 +6,7 @@
 
 #include "vins_core/parameters.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 RunRecord makeRecord() {
@@ -79,4 +79,4 @@ TEST(StopWatch, CpuTimeGrowsWithWork) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -6,7 +6,7 @@
 
 #include "vins_core/trajectory_file.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 constexpr Stamp kStart = 1600000000000000000;
@@ -15,10 +15,10 @@ PipelineResult resultAt(int i, bool is_tracking, std::uint32_t sequence = 0) {
   PipelineResult result;
   result.stamp = kStart + i * 50'000'000;
   result.frame.emplace().observations.resize(100 + i);
-  EstimatorResult estimate;
+  estimator::EstimatorResult estimate;
   estimate.stamp = result.stamp;
   if (is_tracking) {
-    estimate.status = EstimatorStatus::kTracking;
+    estimate.status = estimator::EstimatorStatus::kTracking;
     estimate.odometry.emplace();
     estimate.odometry->stamp = result.stamp;
     estimate.odometry->sequence = sequence;
@@ -100,4 +100,4 @@ TEST(RunResults, CountsWarningsByCode) {
 }
 
 }  // namespace
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -23,7 +23,8 @@ namespace {
 /// The streams of a bag; at equal times their messages come in this order.
 enum Stream : std::size_t { kImu, kGroundTruth, kCamera0, kCamera1 };
 
-std::vector<vins::ScheduledMessage> scheduleOf(const vins::AslRecording& recording) {
+std::vector<vins::pipeline::ScheduledMessage> scheduleOf(
+    const vins::pipeline::AslRecording& recording) {
   std::vector<std::vector<vins::Stamp>> arrivals(4);
   for (const auto& sample : recording.imu) arrivals[kImu].push_back(sample.stamp);
   for (const auto& pose : recording.ground_truth.poses()) {
@@ -34,7 +35,7 @@ std::vector<vins::ScheduledMessage> scheduleOf(const vins::AslRecording& recordi
       arrivals[kCamera0 + camera].push_back(image.stamp);
     }
   }
-  return vins::inOrderOfArrival(arrivals);
+  return vins::pipeline::inOrderOfArrival(arrivals);
 }
 
 cv::Mat readImage(const std::string& path) {
@@ -43,8 +44,8 @@ cv::Mat readImage(const std::string& path) {
   return image;
 }
 
-void write(const vins::AslRecording& recording, const vins::ScheduledMessage& message,
-           vins::BagWriter* bag) {
+void write(const vins::pipeline::AslRecording& recording,
+           const vins::pipeline::ScheduledMessage& message, vins::pipeline::BagWriter* bag) {
   if (message.stream == kImu) {
     bag->writeImu(message.arrival, recording.imu[message.index]);
   } else if (message.stream == kGroundTruth) {
@@ -52,13 +53,13 @@ void write(const vins::AslRecording& recording, const vins::ScheduledMessage& me
     bag->writeGroundTruth(message.arrival, pose.stamp, pose.T_wb);
   } else {
     const std::size_t camera = message.stream - kCamera0;
-    const vins::ImageFile& image = recording.cameras[camera][message.index];
-    bag->writeImage(camera == 0 ? vins::topic::kCamera0 : vins::topic::kCamera1, message.arrival,
-                    image.stamp, readImage(image.path));
+    const vins::pipeline::ImageFile& image = recording.cameras[camera][message.index];
+    bag->writeImage(camera == 0 ? vins::pipeline::topic::kCamera0 : vins::pipeline::topic::kCamera1,
+                    message.arrival, image.stamp, readImage(image.path));
   }
 }
 
-void describe(const vins::AslRecording& recording) {
+void describe(const vins::pipeline::AslRecording& recording) {
   std::cout << recording.folder << ": ";
   for (std::size_t camera = 0; camera < recording.cameras.size(); ++camera) {
     std::cout << recording.cameras[camera].size() << " images of cam" << camera << ", ";
@@ -77,14 +78,14 @@ void describe(const vins::AslRecording& recording) {
 
 vins::ToolExit convert(const po::variables_map& values) {
   const std::string bag_path = values["bag"].as<std::string>();
-  const vins::AslRecording recording =
-      vins::readAslFolder(values["folder"].as<std::string>(),
-                          values["skip-missing-images"].as<bool>() ? vins::MissingImages::kSkip
-                                                                   : vins::MissingImages::kRefuse);
+  const vins::pipeline::AslRecording recording = vins::pipeline::readAslFolder(
+      values["folder"].as<std::string>(), values["skip-missing-images"].as<bool>()
+                                              ? vins::pipeline::MissingImages::kSkip
+                                              : vins::pipeline::MissingImages::kRefuse);
   describe(recording);
   const auto messages = scheduleOf(recording);
   vins::Interrupt interrupt;
-  vins::BagWriter bag(bag_path);
+  vins::pipeline::BagWriter bag(bag_path);
   auto bar = vins::ProgressBar::onStandardError("writing " + bag_path, messages.size());
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (interrupt.isRequested()) {

@@ -24,7 +24,7 @@
 #include "vins_core/input_error.h"
 #include "vins_msgs/conversions.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 using Types = std::map<std::string, std::string>;  ///< of the bag's topics
@@ -268,4 +268,4 @@ std::unique_ptr<Recording> openRecording(const std::string& path,
   throw InputError(path + ": is not there; allowed: a bag, or a folder in the ASL layout");
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -13,7 +13,7 @@
 #include "vins_core/input_error.h"
 #include "vins_msgs/conversions.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// The open bag, and how many messages each topic has.
 class BagWriter::Bag {
@@ -102,4 +102,4 @@ void BagWriter::finish() {
   bag_.reset();
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

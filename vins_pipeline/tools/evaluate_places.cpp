@@ -28,8 +28,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-vins::PlaceStudyOptions studyOptions(const po::variables_map& values) {
-  vins::PlaceStudyOptions options;
+vins::pipeline::PlaceStudyOptions studyOptions(const po::variables_map& values) {
+  vins::pipeline::PlaceStudyOptions options;
   options.view.direct_index_level = values["direct-index-level"].as<int>();
   options.detector.excluded_keyframes = values["exclude-keyframes"].as<int>();
   options.detector.excluded_seconds = values["exclude-seconds"].as<double>();
@@ -39,45 +39,47 @@ vins::PlaceStudyOptions studyOptions(const po::variables_map& values) {
   return options;
 }
 
-std::string curveCsv(const std::vector<vins::CurvePoint>& curve) {
+std::string curveCsv(const std::vector<vins::pipeline::CurvePoint>& curve) {
   std::ostringstream out;
   out << "normalized_score,answers,right,precision,recall\n";
-  for (const vins::CurvePoint& point : curve) {
+  for (const vins::pipeline::CurvePoint& point : curve) {
     out << point.threshold << "," << point.answers << "," << point.right << "," << point.precision
         << "," << point.recall << "\n";
   }
   return out.str();
 }
 
-std::string loopsCsv(const vins::PlaceStudy& study) {
+std::string loopsCsv(const vins::pipeline::PlaceStudy& study) {
   std::ostringstream out;
   out << "query,old,score,overlap,matches,epipolar_inliers,pose_inliers,tilt_deg,position_error_m,"
          "rotation_error_deg,status\n";
-  for (const vins::StudiedLoop& loop : study.loops) {
-    const vins::LoopVerification& found = loop.verification;
+  for (const vins::pipeline::StudiedLoop& loop : study.loops) {
+    const vins::pose_graph::LoopVerification& found = loop.verification;
     out << loop.query << "," << loop.old << "," << loop.score << "," << loop.overlap << ","
         << found.matches.size() << "," << found.epipolar_inliers << "," << found.pose_inliers << ","
         << found.tilt / kDegree << "," << loop.position_error << ","
-        << loop.rotation_error / kDegree << "," << vins::toString(found.status) << "\n";
+        << loop.rotation_error / kDegree << "," << toString(found.status) << "\n";
   }
   return out.str();
 }
 
-void printCurve(const std::vector<vins::CurvePoint>& curve) {
+void printCurve(const std::vector<vins::pipeline::CurvePoint>& curve) {
   std::cout << "  threshold  answers  precision  recall\n";
   for (std::size_t i = 1; i <= 10; ++i) {
     if (curve.empty()) break;
-    const vins::CurvePoint& point = curve[std::max<std::size_t>(1, curve.size() * i / 10) - 1];
+    const vins::pipeline::CurvePoint& point =
+        curve[std::max<std::size_t>(1, curve.size() * i / 10) - 1];
     std::cout << std::fixed << std::setprecision(3) << std::setw(11) << point.threshold
               << std::setw(9) << point.answers << std::setw(11) << point.precision << std::setw(8)
               << point.recall << "\n";
   }
 }
 
-void printLoops(const vins::PlaceStudy& study, const vins::PlaceStudyOptions& options) {
+void printLoops(const vins::pipeline::PlaceStudy& study,
+                const vins::pipeline::PlaceStudyOptions& options) {
   int accepted = 0, wrong = 0, overlapping = 0;
   std::vector<double> positions, rotations;
-  for (const vins::StudiedLoop& loop : study.loops) {
+  for (const vins::pipeline::StudiedLoop& loop : study.loops) {
     overlapping += loop.overlap >= options.needed_overlap ? 1 : 0;
     if (!loop.verification.isAccepted()) continue;
     ++accepted;
@@ -96,19 +98,21 @@ void printLoops(const vins::PlaceStudy& study, const vins::PlaceStudyOptions& op
 }
 
 /// The first accepted loops, and every one that is wrong.
-void drawLoops(const std::vector<vins::StudiedKeyframe>& keyframes, const vins::PlaceStudy& study,
-               const vins::PlaceStudyOptions& options, std::size_t most, const fs::path& folder) {
+void drawLoops(const std::vector<vins::pipeline::StudiedKeyframe>& keyframes,
+               const vins::pipeline::PlaceStudy& study,
+               const vins::pipeline::PlaceStudyOptions& options, std::size_t most,
+               const fs::path& folder) {
   std::size_t drawn = 0;
-  for (const vins::StudiedLoop& loop : study.loops) {
+  for (const vins::pipeline::StudiedLoop& loop : study.loops) {
     if (!loop.verification.isAccepted()) continue;
     const bool is_wrong = loop.overlap < options.found_overlap;
     if (!is_wrong && drawn >= most) continue;
     drawn += is_wrong ? 0 : 1;
     const std::string name = (is_wrong ? "wrong_" : "loop_") + std::to_string(loop.query) + "_" +
                              std::to_string(loop.old) + ".png";
-    const cv::Mat picture = vins::drawMatches(keyframes[loop.query].image,
-                                              keyframes[loop.old].image, study.views[loop.query],
-                                              study.views[loop.old], loop.verification, loop.score);
+    const cv::Mat picture = vins::pose_graph::drawMatches(
+        keyframes[loop.query].image, keyframes[loop.old].image, study.views[loop.query],
+        study.views[loop.old], loop.verification, loop.score);
     if (!cv::imwrite((folder / name).string(), picture)) {
       throw vins::InputError((folder / name).string() + ": cannot be written");
     }
@@ -117,20 +121,20 @@ void drawLoops(const std::vector<vins::StudiedKeyframe>& keyframes, const vins::
 
 vins::ToolExit evaluate(const po::variables_map& values) {
   cv::setNumThreads(1);
-  vins::PipelineOptions pipeline =
-      vins::readPipelineOptions(values["config"].as<std::string>(), nullptr);
+  vins::pipeline::PipelineOptions pipeline =
+      vins::pipeline::readPipelineOptions(values["config"].as<std::string>(), nullptr);
   pipeline.estimator.max_solver_time = 0.0;
-  const auto keyframes =
-      vins::collectKeyframes(pipeline, values["recording"].as<std::string>(), 0.0, std::nullopt);
+  const auto keyframes = vins::pipeline::collectKeyframes(
+      pipeline, values["recording"].as<std::string>(), 0.0, std::nullopt);
   const auto options = studyOptions(values);
-  const auto pattern = vins::BriefPattern::load(values["pattern"].as<std::string>());
+  const auto pattern = vins::pose_graph::BriefPattern::load(values["pattern"].as<std::string>());
   const fs::path folder = values["out"].as<std::string>();
   fs::create_directories(folder);
   for (const auto& path : values["vocabulary"].as<std::vector<std::string>>()) {
-    const vins::Vocabulary vocabulary = vins::readVocabulary(path);
-    const auto study =
-        vins::studyPlaces(keyframes, *pipeline.cameras.front(), vocabulary, pattern, options);
-    const auto curve = vins::precisionRecall(study, options);
+    const vins::pose_graph::Vocabulary vocabulary = vins::pose_graph::readVocabulary(path);
+    const auto study = vins::pipeline::studyPlaces(keyframes, *pipeline.cameras.front(), vocabulary,
+                                                   pattern, options);
+    const auto curve = vins::pipeline::precisionRecall(study, options);
     const std::string name = fs::path(path).stem().string();
     vins::writeTextFile((folder / (name + "_curve.csv")).string(), curveCsv(curve));
     vins::writeTextFile((folder / (name + "_loops.csv")).string(), loopsCsv(study));
@@ -140,7 +144,7 @@ vins::ToolExit evaluate(const po::variables_map& values) {
               << " keyframes, " << to_find << " at places seen before\n";
     printCurve(curve);
     std::cout << "  recall without a wrong answer: " << std::setprecision(3)
-              << vins::recallWithoutError(curve) << "\n";
+              << vins::pipeline::recallWithoutError(curve) << "\n";
     printLoops(study, options);
     std::cout << "  cost: describe " << std::setprecision(2) << study.describe_ms << " ms, detect "
               << study.detect_ms << " ms, verify " << study.verify_ms << " ms (worst "
@@ -151,7 +155,7 @@ vins::ToolExit evaluate(const po::variables_map& values) {
 }
 
 po::options_description describeOptions() {
-  const vins::LoopDetectorOptions detector;
+  const vins::pose_graph::LoopDetectorOptions detector;
   po::options_description options;
   auto add = options.add_options();
   add("config", po::value<std::string>()->required(), "configuration file of the rig");
@@ -172,9 +176,11 @@ po::options_description describeOptions() {
       "of candidates");
   add("consistent", po::value<int>()->default_value(detector.consistent_keyframes),
       "keyframes before that must agree");
-  add("min-inliers", po::value<int>()->default_value(vins::LoopVerifierOptions().min_inliers),
+  add("min-inliers",
+      po::value<int>()->default_value(vins::pose_graph::LoopVerifierOptions().min_inliers),
       "of an accepted loop");
-  add("direct-index-level", po::value<int>()->default_value(vins::ViewOptions().direct_index_level),
+  add("direct-index-level",
+      po::value<int>()->default_value(vins::pose_graph::ViewOptions().direct_index_level),
       "of the vocabulary; 0: compare all features");
   return options;
 }

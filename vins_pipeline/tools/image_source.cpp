@@ -11,7 +11,7 @@
 #include "vins_core/input_error.h"
 #include "vins_pipeline/bag_recording.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +76,4 @@ std::vector<ImageLoader> findImages(const std::string& path, const ImageSourceOp
   return images;
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -6,7 +6,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace vins {
+namespace vins::pipeline {
 
 /// Which images are taken of recordings.
 struct ImageSourceOptions {
@@ -23,4 +23,4 @@ using ImageLoader = std::function<cv::Mat()>;
 /// ASL layout, or of a ROS bag. Throws InputError where there are none.
 std::vector<ImageLoader> findImages(const std::string& path, const ImageSourceOptions& options);
 
-}  // namespace vins
+}  // namespace vins::pipeline

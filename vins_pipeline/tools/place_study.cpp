@@ -11,7 +11,7 @@
 #include "vins_core/wall_clock.h"
 #include "vins_pipeline/bag_recording.h"
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 constexpr double kLargestTruthGap = 0.2;  // [s]
@@ -55,7 +55,7 @@ class Collector {
  private:
   void work() {
     while (const auto result = pipeline_.process()) {
-      for (const EstimatorResult& estimate : result->estimates) {
+      for (const estimator::EstimatorResult& estimate : result->estimates) {
         for (const Keyframe& keyframe : estimate.keyframes) keep(keyframe);
       }
     }
@@ -84,16 +84,16 @@ class Collector {
 };
 
 bool isExcluded(const std::vector<StudiedKeyframe>& keyframes, std::size_t query, std::size_t old,
-                const LoopDetectorOptions& options) {
+                const pose_graph::LoopDetectorOptions& options) {
   const double seconds = toSeconds(keyframes[query].keyframe.stamp - keyframes[old].keyframe.stamp);
   return query - old <= static_cast<std::size_t>(options.excluded_keyframes) ||
          seconds < options.excluded_seconds;
 }
 
 StudiedQuery askDatabase(const std::vector<StudiedKeyframe>& keyframes,
-                         const std::vector<DescribedView>& described, std::size_t query,
-                         const PlaceDatabase& database, const Camera& camera,
-                         const PlaceStudyOptions& options) {
+                         const std::vector<pose_graph::DescribedView>& described, std::size_t query,
+                         const pose_graph::PlaceDatabase& database,
+                         const camera_model::Camera& camera, const PlaceStudyOptions& options) {
   StudiedQuery result;
   result.query = query;
   std::size_t end = 0;
@@ -106,16 +106,16 @@ StudiedQuery askDatabase(const std::vector<StudiedKeyframe>& keyframes,
   if (best.empty()) return result;
   result.old = static_cast<std::size_t>(best[0].id);
   result.score = best[0].score;
-  const double expected = bagScore(described[query].bag, described[query - 1].bag);
+  const double expected = pose_graph::bagScore(described[query].bag, described[query - 1].bag);
   result.normalized_score = result.score / std::max(expected, options.detector.min_score);
   result.overlap = overlapOf(keyframes[query], keyframes[*result.old], camera);
   return result;
 }
 
 StudiedLoop compare(const std::vector<StudiedKeyframe>& keyframes,
-                    const std::vector<DescribedView>& described, std::size_t query,
-                    const LoopCandidate& candidate, const LoopVerifier& verifier,
-                    const Camera& camera) {
+                    const std::vector<pose_graph::DescribedView>& described, std::size_t query,
+                    const pose_graph::LoopCandidate& candidate,
+                    const pose_graph::LoopVerifier& verifier, const camera_model::Camera& camera) {
   StudiedLoop loop;
   loop.query = query;
   loop.old = static_cast<std::size_t>(candidate.id);
@@ -156,7 +156,8 @@ std::vector<StudiedKeyframe> collectKeyframes(const PipelineOptions& options,
   return keyframes;
 }
 
-double overlapOf(const StudiedKeyframe& query, const StudiedKeyframe& old, const Camera& camera) {
+double overlapOf(const StudiedKeyframe& query, const StudiedKeyframe& old,
+                 const camera_model::Camera& camera) {
   if (query.keyframe.points.empty()) return 0.0;
   const Pose T_cw_query = (query.keyframe.T_wb * query.keyframe.T_bc).inverse();
   const Pose T_old_query =
@@ -176,14 +177,14 @@ double overlapOf(const StudiedKeyframe& query, const StudiedKeyframe& old, const
   return static_cast<double>(seen) / static_cast<double>(query.keyframe.points.size());
 }
 
-PlaceStudy studyPlaces(const std::vector<StudiedKeyframe>& keyframes, const Camera& camera,
-                       const Vocabulary& vocabulary, const BriefPattern& pattern,
-                       const PlaceStudyOptions& options) {
-  const ViewDescriber describer(camera, vocabulary, pattern, options.view);
-  const LoopVerifier verifier(options.verifier);
-  LoopDetector detector(vocabulary.wordCount(), options.detector);
+PlaceStudy studyPlaces(const std::vector<StudiedKeyframe>& keyframes,
+                       const camera_model::Camera& camera, const pose_graph::Vocabulary& vocabulary,
+                       const pose_graph::BriefPattern& pattern, const PlaceStudyOptions& options) {
+  const pose_graph::ViewDescriber describer(camera, vocabulary, pattern, options.view);
+  const pose_graph::LoopVerifier verifier(options.verifier);
+  pose_graph::LoopDetector detector(vocabulary.wordCount(), options.detector);
   PlaceStudy study;
-  std::vector<DescribedView> described;
+  std::vector<pose_graph::DescribedView> described;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     WallClock clock;
     // The places in the list stand for the ids.
@@ -199,7 +200,7 @@ PlaceStudy studyPlaces(const std::vector<StudiedKeyframe>& keyframes, const Came
     clock.lap();
     const auto candidates = detector.detect(keyframe.id, keyframe.stamp, described[i].bag);
     study.detect_ms += 1e3 * clock.lap() / static_cast<double>(keyframes.size());
-    for (const LoopCandidate& candidate : candidates) {
+    for (const pose_graph::LoopCandidate& candidate : candidates) {
       clock.lap();
       study.loops.push_back(compare(keyframes, described, i, candidate, verifier, camera));
       const double passed = 1e3 * clock.lap();
@@ -209,7 +210,7 @@ PlaceStudy studyPlaces(const std::vector<StudiedKeyframe>& keyframes, const Came
     }
   }
   study.verify_ms /= std::max<double>(1.0, static_cast<double>(study.loops.size()));
-  for (DescribedView& one : described) study.views.push_back(std::move(one.view));
+  for (pose_graph::DescribedView& one : described) study.views.push_back(std::move(one.view));
   return study;
 }
 
@@ -247,4 +248,4 @@ double recallWithoutError(const std::vector<CurvePoint>& curve) {
   return recall;
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -13,7 +13,7 @@
 #include "vins_core/trajectory.h"
 #include "vins_pipeline/pipeline.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// A keyframe of a run, its image, and where the body truly stood.
 struct StudiedKeyframe {
@@ -45,14 +45,14 @@ struct StudiedLoop {
   double overlap = 0.0;
   double position_error = 0.0;  ///< of T_old_query [m]
   double rotation_error = 0.0;  ///< of T_old_query [rad]
-  LoopVerification verification;
+  pose_graph::LoopVerification verification;
 };
 
 /// How the study asks.
 struct PlaceStudyOptions {
-  ViewOptions view;
-  LoopDetectorOptions detector;
-  LoopVerifierOptions verifier;
+  pose_graph::ViewOptions view;
+  pose_graph::LoopDetectorOptions detector;
+  pose_graph::LoopVerifierOptions verifier;
   double found_overlap = 0.3;   ///< from here on an answer is right
   double needed_overlap = 0.5;  ///< from here on a place should have been found
 };
@@ -61,7 +61,7 @@ struct PlaceStudyOptions {
 struct PlaceStudy {
   std::vector<StudiedQuery> queries;
   std::vector<StudiedLoop> loops;
-  std::vector<KeyframeView> views;
+  std::vector<pose_graph::KeyframeView> views;
   double describe_ms = 0.0, detect_ms = 0.0, verify_ms = 0.0;  ///< means
   double verify_worst_ms = 0.0;
   std::size_t largest_view = 0;  ///< [bytes]
@@ -70,12 +70,13 @@ struct PlaceStudy {
 /// Share of the query's points that the old keyframe has in its image too, by the true poses, and
 /// sees from about the same side and distance: 25 degrees and a factor of 1.5. Walls are not known:
 /// what they hide is counted, too.
-double overlapOf(const StudiedKeyframe& query, const StudiedKeyframe& old, const Camera& camera);
+double overlapOf(const StudiedKeyframe& query, const StudiedKeyframe& old,
+                 const camera_model::Camera& camera);
 
 /// Asks for each keyframe in turn.
-PlaceStudy studyPlaces(const std::vector<StudiedKeyframe>& keyframes, const Camera& camera,
-                       const Vocabulary& vocabulary, const BriefPattern& pattern,
-                       const PlaceStudyOptions& options);
+PlaceStudy studyPlaces(const std::vector<StudiedKeyframe>& keyframes,
+                       const camera_model::Camera& camera, const pose_graph::Vocabulary& vocabulary,
+                       const pose_graph::BriefPattern& pattern, const PlaceStudyOptions& options);
 
 /// A point of the precision-recall curve: answers with at least this normalized score.
 struct CurvePoint {
@@ -90,4 +91,4 @@ std::vector<CurvePoint> precisionRecall(const PlaceStudy& study, const PlaceStud
 /// The largest recall of the points without a wrong answer.
 double recallWithoutError(const std::vector<CurvePoint>& curve);
 
-}  // namespace vins
+}  // namespace vins::pipeline

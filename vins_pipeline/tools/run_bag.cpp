@@ -39,23 +39,24 @@ namespace {
 
 /// A run in the making.
 struct Run {
-  vins::PipelineOptions options;
-  std::unique_ptr<vins::Recording> recording;
-  vins::RunRecord record;
-  vins::RunResults results;
-  vins::FrameRecord frames;
-  vins::TrackPicture picture;
-  vins::LoopResults loop_results;
-  std::vector<vins::SequencePath> paths;           ///< at the end
-  std::optional<vins::PoseGraphStatistics> graph;  ///< at the end; nothing without loop closing
-  vins::RunMaps maps;
+  vins::pipeline::PipelineOptions options;
+  std::unique_ptr<vins::pipeline::Recording> recording;
+  vins::pipeline::RunRecord record;
+  vins::pipeline::RunResults results;
+  vins::pipeline::FrameRecord frames;
+  vins::pipeline::TrackPicture picture;
+  vins::pipeline::LoopResults loop_results;
+  std::vector<vins::pose_graph::SequencePath> paths;  ///< at the end
+  std::optional<vins::pose_graph::PoseGraphStatistics>
+      graph;  ///< at the end; nothing without loop closing
+  vins::pipeline::RunMaps maps;
   vins::Stamp reached = 0;  ///< by arrival [ns]
   bool interrupted = false;
 };
 
-vins::RecordingSelection selectionOf(const po::variables_map& values,
-                                     const vins::PipelineOptions& options) {
-  vins::RecordingSelection selection;
+vins::pipeline::RecordingSelection selectionOf(const po::variables_map& values,
+                                               const vins::pipeline::PipelineOptions& options) {
+  vins::pipeline::RecordingSelection selection;
   selection.imu_topic = options.imu_topic;
   selection.image_topics = options.image_topics;
   selection.start = values["start"].as<double>();
@@ -63,14 +64,14 @@ vins::RecordingSelection selectionOf(const po::variables_map& values,
   return selection;
 }
 
-vins::PipelineOptions readConfig(const po::variables_map& values) {
+vins::pipeline::PipelineOptions readConfig(const po::variables_map& values) {
   const std::string path = values["config"].as<std::string>();
   std::vector<std::string> warnings;
-  vins::PipelineOptions options = vins::readPipelineOptions(path, &warnings);
+  vins::pipeline::PipelineOptions options = vins::pipeline::readPipelineOptions(path, &warnings);
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
   // The result must not depend on the computer's speed.
   options.estimator.max_solver_time = 0.0;
-  vins::PoseGraphConfiguration& loops = options.loops;
+  vins::pose_graph::PoseGraphConfiguration& loops = options.loops;
   loops.options.threaded = false;
   const std::string load = values["load-map"].as<std::string>();
   if (!load.empty()) options.map = load;
@@ -79,14 +80,15 @@ vins::PipelineOptions readConfig(const po::variables_map& values) {
     if (load.empty()) options.map.clear();
   }
   if (loops.is_on) {
-    const std::string shipped = loops.files.needsShipped() ? vins::findSupportFiles() : "";
-    options.places = vins::readPlaceModel(loops.files, shipped);
+    const std::string shipped =
+        loops.files.needsShipped() ? vins::pipeline::findSupportFiles() : "";
+    options.places = vins::pose_graph::readPlaceModel(loops.files, shipped);
   }
   return options;
 }
 
 void requireImageSize(const cv::Mat& image, const Run& run) {
-  const vins::ImageSize size = run.options.cameras[0]->imageSize();
+  const vins::camera_model::ImageSize size = run.options.cameras[0]->imageSize();
   if (image.cols == size.width && image.rows == size.height) return;
   throw vins::InputError(run.recording->summary().name + ": found images of " +
                          std::to_string(image.cols) + "x" + std::to_string(image.rows) +
@@ -94,14 +96,14 @@ void requireImageSize(const cv::Mat& image, const Run& run) {
                          "x" + std::to_string(size.height));
 }
 
-void feed(const vins::Record& message, vins::Pipeline* pipeline, Run* run) {
+void feed(const vins::pipeline::Record& message, vins::pipeline::Pipeline* pipeline, Run* run) {
   if (const auto* sample = std::get_if<vins::ImuSample>(&message.data)) {
     pipeline->addImu(*sample);
-  } else if (const auto* truth = std::get_if<vins::RecordedTruth>(&message.data)) {
+  } else if (const auto* truth = std::get_if<vins::pipeline::RecordedTruth>(&message.data)) {
     run->results.add(*truth);
   } else {
-    const auto& image = std::get<vins::RecordedImage>(message.data);
-    const vins::StopWatch watch;
+    const auto& image = std::get<vins::pipeline::RecordedImage>(message.data);
+    const vins::pipeline::StopWatch watch;
     const cv::Mat pixels = image.load();
     run->record.addDuration("read", watch.elapsed());
     requireImageSize(pixels, *run);
@@ -110,8 +112,9 @@ void feed(const vins::Record& message, vins::Pipeline* pipeline, Run* run) {
 }
 
 /// Wall clock and CPU time of the odometry's stages together, where both have worked.
-void addFrameDuration(const vins::PipelineResult& result, vins::RunRecord* record) {
-  vins::Duration frame;
+void addFrameDuration(const vins::pipeline::PipelineResult& result,
+                      vins::pipeline::RunRecord* record) {
+  vins::pipeline::Duration frame;
   int stages = 0;
   for (const auto& [stage, duration] : result.durations) {
     record->addDuration(stage, duration);
@@ -123,7 +126,7 @@ void addFrameDuration(const vins::PipelineResult& result, vins::RunRecord* recor
   if (stages > 1) record->addDuration("tracker+estimator", frame);
 }
 
-void work(vins::Pipeline* pipeline, Run* run) {
+void work(vins::pipeline::Pipeline* pipeline, Run* run) {
   while (const auto result = pipeline->process()) {
     addFrameDuration(*result, &run->record);
     run->record.addEvents(result->events);
@@ -134,10 +137,10 @@ void work(vins::Pipeline* pipeline, Run* run) {
   }
 }
 
-void closeGraph(vins::Pipeline* pipeline, Run* run) {
-  vins::PoseGraph* graph = pipeline->poseGraph();
+void closeGraph(vins::pipeline::Pipeline* pipeline, Run* run) {
+  vins::pose_graph::PoseGraph* graph = pipeline->poseGraph();
   if (graph == nullptr) return;
-  const vins::StopWatch watch;
+  const vins::pipeline::StopWatch watch;
   graph->finish();
   run->record.addDuration("pose_graph/finish", watch.elapsed());
   run->paths = graph->paths();
@@ -156,12 +159,12 @@ std::string noteOf(const Run& run) {
 
 void process(vins::Interrupt* interrupt, Run* run) {
   constexpr vins::Stamp kMillisecond = 1'000'000;
-  const vins::RecordingSummary& summary = run->recording->summary();
+  const vins::pipeline::RecordingSummary& summary = run->recording->summary();
   const auto shareOf = [&](vins::Stamp arrival) {
     return static_cast<std::size_t>(std::max<vins::Stamp>(0, arrival - summary.begin) /
                                     kMillisecond);
   };
-  vins::Pipeline pipeline(run->options);
+  vins::pipeline::Pipeline pipeline(run->options);
   auto bar = vins::ProgressBar::onStandardError("odometry", shareOf(summary.end));
   while (const auto message = run->recording->next()) {
     run->interrupted = interrupt->isRequested();
@@ -216,7 +219,7 @@ void writeFiles(const fs::path& folder, const Run& run) {
   if (run.graph) {
     write("loop_live.txt", run.loop_results.live());
     write("loop_final.txt", run.loop_results.finalPath(run.paths));
-    write("vins_result_loop.csv", vins::LoopResults::vinsMonoCsv(run.paths));
+    write("vins_result_loop.csv", vins::pipeline::LoopResults::vinsMonoCsv(run.paths));
   }
   write("timing.json", run.record.timingJson(secondsDone(run)));
   write("events.csv", run.record.eventsCsv());
@@ -225,7 +228,7 @@ void writeFiles(const fs::path& folder, const Run& run) {
   run.picture.write((folder / "tracks.png").string());
 }
 
-void printWarnings(const vins::RunResults& results) {
+void printWarnings(const vins::pipeline::RunResults& results) {
   if (results.warnings().empty()) return;
   std::cout << "warnings      ";
   const char* separator = "";
@@ -236,7 +239,7 @@ void printWarnings(const vins::RunResults& results) {
   std::cout << " (see events.csv)\n";
 }
 
-void printLoops(const vins::PoseGraphStatistics& graph) {
+void printLoops(const vins::pose_graph::PoseGraphStatistics& graph) {
   std::cout << "loops         " << graph.found << " found, " << graph.refined
             << " of them refined in the window; " << graph.rejected << " candidates rejected\n"
             << "pose graph    " << graph.keyframes << " keyframes, " << graph.skipped
@@ -245,8 +248,8 @@ void printLoops(const vins::PoseGraphStatistics& graph) {
 }
 
 void printSummary(const Run& run, const fs::path& folder) {
-  const vins::RecordingSummary& summary = run.recording->summary();
-  const vins::RunResults& results = run.results;
+  const vins::pipeline::RecordingSummary& summary = run.recording->summary();
+  const vins::pipeline::RunResults& results = run.results;
   const double wall = run.record.elapsed().wall;
   std::cout << std::fixed << std::setprecision(2) << "recording     " << summary.name << ": "
             << summary.duration() << " s, " << summary.images << " images, " << summary.imu_samples
@@ -265,7 +268,7 @@ void printSummary(const Run& run, const fs::path& folder) {
   printWarnings(results);
   std::cout << "speed         " << secondsDone(run) << " s in " << wall
             << " s: " << secondsDone(run) / std::max(wall, 1e-9) << "x real time, peak memory "
-            << vins::peakMemoryMb() << " MB\n"
+            << vins::pipeline::peakMemoryMb() << " MB\n"
             << "written to    " << folder.string() << ": vio_live.txt, vins_result_no_loop.csv, "
             << (run.graph ? "loop_live.txt, loop_final.txt, vins_result_loop.csv, " : "")
             << "timing.json, events.csv, tracker.csv, estimator.csv"
@@ -281,9 +284,9 @@ void report(const po::variables_map& values, const fs::path& folder, const Run& 
     estimates.push_back((folder / "loop_live.txt").string());
     estimates.push_back((folder / "loop_final.txt").string());
   }
-  const bool is_made =
-      vins::makeReport({truth, estimates, values["align"].as<std::string>(),
-                        (folder / "report.html").string(), (folder / "evaluation.json").string()});
+  const bool is_made = vins::pipeline::makeReport(
+      {truth, estimates, values["align"].as<std::string>(), (folder / "report.html").string(),
+       (folder / "evaluation.json").string()});
   if (is_made) std::cout << "report        " << (folder / "report.html").string() << "\n";
 }
 
@@ -307,12 +310,12 @@ vins::ToolExit runBag(const po::variables_map& values) {
   if (!run.maps.file_to_save.empty() && !run.options.loops.is_on) {
     throw vins::InputError("--save-map: a map needs loop closing, which is off");
   }
-  run.recording =
-      vins::openRecording(values["bag"].as<std::string>(), selectionOf(values, run.options));
+  run.recording = vins::pipeline::openRecording(values["bag"].as<std::string>(),
+                                                selectionOf(values, run.options));
   run.reached = run.recording->summary().begin;
   if (values.count("draw-tracks") > 0) {
     const double after = values["draw-tracks"].as<double>();
-    run.picture = vins::TrackPicture(run.reached + vins::toNanoseconds(after));
+    run.picture = vins::pipeline::TrackPicture(run.reached + vins::toNanoseconds(after));
   }
   const fs::path folder = values["out"].as<std::string>();
   vins::makeFolder(folder.string());

@@ -4,10 +4,10 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 void finishMaps(Pipeline* pipeline, RunMaps* maps) {
-  const std::vector<SequencePath> paths = pipeline->poseGraph()->paths();
+  const std::vector<pose_graph::SequencePath> paths = pipeline->poseGraph()->paths();
   maps->loaded = pipeline->loadedMap();
   maps->is_joined = !paths.empty() && paths.back().sequence >= 0 && paths.back().in_map;
   if (maps->file_to_save.empty() || paths.empty()) return;
@@ -32,4 +32,4 @@ std::ostream& operator<<(std::ostream& out, const RunMaps& maps) {
              << 1e-6 * static_cast<double>(bytes) << " MB\n";
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

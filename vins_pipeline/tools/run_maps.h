@@ -7,11 +7,11 @@
 
 #include "vins_pipeline/pipeline.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// The maps of a run: the one it began with, and the one it leaves.
 struct RunMaps {
-  std::optional<LoadedMap> loaded;
+  std::optional<pose_graph::LoadedMap> loaded;
   bool is_joined = false;    ///< this run and the loaded map have one frame
   std::string file_to_save;  ///< "" for none
   std::size_t saved_keyframes = 0;
@@ -25,4 +25,4 @@ void finishMaps(Pipeline* pipeline, RunMaps* maps);
 /// A line for the loaded and one for the saved map, where there are such.
 std::ostream& operator<<(std::ostream& out, const RunMaps& maps);
 
-}  // namespace vins
+}  // namespace vins::pipeline

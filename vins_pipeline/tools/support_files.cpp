@@ -9,7 +9,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 
 std::string findSupportFiles() {
   // PREFIX/lib/vins_pipeline/run_bag has PREFIX/share/pose_graph.
@@ -28,4 +28,4 @@ std::string findSupportFiles() {
                    "configuration");
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

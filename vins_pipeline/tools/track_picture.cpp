@@ -5,15 +5,15 @@
 #include "feature_tracker/track_drawing.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pipeline {
 
-void TrackPicture::add(const PipelineResult& result, const Camera& camera) {
+void TrackPicture::add(const PipelineResult& result, const camera_model::Camera& camera) {
   if (!from_ || isDrawn() || result.stamp < *from_ || !result.frame) return;
-  picture_ = drawTracks(result.image, *result.frame, camera);
+  picture_ = feature_tracker::drawTracks(result.image, *result.frame, camera);
 }
 
 void TrackPicture::write(const std::string& path) const {
   if (isDrawn() && !cv::imwrite(path, picture_)) throw InputError(path + ": cannot be written");
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -9,7 +9,7 @@
 #include "vins_core/time.h"
 #include "vins_pipeline/pipeline.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// One picture of a run: the first image from a time on, with its tracks (drawTracks()).
 class TrackPicture {
@@ -19,7 +19,7 @@ class TrackPicture {
   /// `from`: the image's stamp, at least [ns].
   explicit TrackPicture(Stamp from) : from_(from) {}
 
-  void add(const PipelineResult& result, const Camera& camera);
+  void add(const PipelineResult& result, const camera_model::Camera& camera);
 
   bool isDrawn() const { return !picture_.empty(); }
 
@@ -31,4 +31,4 @@ class TrackPicture {
   cv::Mat picture_;
 };
 
-}  // namespace vins
+}  // namespace vins::pipeline

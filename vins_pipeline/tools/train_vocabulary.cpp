@@ -20,16 +20,16 @@ namespace po = boost::program_options;
 
 namespace {
 
-using ImageDescriptors = std::vector<std::vector<vins::BriefDescriptor>>;
+using ImageDescriptors = std::vector<std::vector<vins::pose_graph::BriefDescriptor>>;
 
-std::vector<vins::ImageLoader> listImages(const po::variables_map& values) {
-  vins::ImageSourceOptions options;
+std::vector<vins::pipeline::ImageLoader> listImages(const po::variables_map& values) {
+  vins::pipeline::ImageSourceOptions options;
   options.imu_topic = values["imu-topic"].as<std::string>();
   options.image_topic = values["image-topic"].as<std::string>();
   options.every = values["every"].as<double>();
-  std::vector<vins::ImageLoader> images;
+  std::vector<vins::pipeline::ImageLoader> images;
   for (const auto& path : values["input"].as<std::vector<std::string>>()) {
-    const auto found = vins::findImages(path, options);
+    const auto found = vins::pipeline::findImages(path, options);
     std::cout << path << ": " << found.size() << " images\n";
     images.insert(images.end(), found.begin(), found.end());
   }
@@ -48,10 +48,11 @@ void thinOut(std::size_t most, ImageDescriptors* images) {
   }
 }
 
-ImageDescriptors describe(const std::vector<vins::ImageLoader>& images,
+ImageDescriptors describe(const std::vector<vins::pipeline::ImageLoader>& images,
                           const po::variables_map& values) {
-  const vins::BriefExtractor brief(vins::BriefPattern::load(values["pattern"].as<std::string>()));
-  vins::SpreadCornersOptions corners;
+  const vins::pose_graph::BriefExtractor brief(
+      vins::pose_graph::BriefPattern::load(values["pattern"].as<std::string>()));
+  vins::pose_graph::SpreadCornersOptions corners;
   corners.max_corners = values["descriptors-per-image"].as<int>();
   corners.border = brief.border();
   corners.validate();
@@ -60,7 +61,7 @@ ImageDescriptors describe(const std::vector<vins::ImageLoader>& images,
   for (const auto& load : images) {
     const cv::Mat image = load();
     descriptors.push_back(
-        brief.describe(image, vins::findSpreadCorners(image, {}, corners)).descriptors);
+        brief.describe(image, vins::pose_graph::findSpreadCorners(image, {}, corners)).descriptors);
     bar.update(descriptors.size());
   }
   bar.finish();
@@ -70,7 +71,7 @@ ImageDescriptors describe(const std::vector<vins::ImageLoader>& images,
 
 vins::ToolExit train(const po::variables_map& values) {
   cv::setNumThreads(1);
-  vins::VocabularyTrainingOptions options;
+  vins::pose_graph::VocabularyTrainingOptions options;
   options.branching = values["k"].as<int>();
   options.levels = values["levels"].as<int>();
   options.seed = values["seed"].as<std::uint64_t>();
@@ -79,18 +80,18 @@ vins::ToolExit train(const po::variables_map& values) {
   const ImageDescriptors images = describe(listImages(values), values);
   constexpr double kSteps = 1000.0;
   auto bar = vins::ProgressBar::onStandardError("training", static_cast<std::size_t>(kSteps));
-  const vins::Vocabulary vocabulary = vins::trainVocabulary(
+  const vins::pose_graph::Vocabulary vocabulary = vins::pose_graph::trainVocabulary(
       images, options, [&](double share) { bar.update(static_cast<std::size_t>(kSteps * share)); });
   bar.finish();
   const std::string path = values["output"].as<std::string>();
-  vins::writeVocabulary(path, vocabulary);
+  vins::pose_graph::writeVocabulary(path, vocabulary);
   std::cout << "written: " << path << ", " << vocabulary.wordCount() << " words of "
             << vocabulary.nodeCount() << " nodes\n";
   return vins::ToolExit::kDone;
 }
 
 po::options_description describeOptions() {
-  const vins::VocabularyTrainingOptions defaults;
+  const vins::pose_graph::VocabularyTrainingOptions defaults;
   po::options_description options;
   auto add = options.add_options();
   add("input", po::value<std::vector<std::string>>()->required(),

@@ -13,7 +13,7 @@
 
 namespace fs = std::filesystem;
 
-namespace vins {
+namespace vins::pipeline {
 namespace {
 
 constexpr char kProgram[] = "evaluate_trajectory";
@@ -70,4 +70,4 @@ bool makeReport(const TrajectoryReport& report) {
                    " has ended with code " + std::to_string(exit_code));
 }
 
-}  // namespace vins
+}  // namespace vins::pipeline

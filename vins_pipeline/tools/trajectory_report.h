@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vins {
+namespace vins::pipeline {
 
 /// What to evaluate.
 struct TrajectoryReport {
@@ -27,4 +27,4 @@ int runProgram(const std::vector<std::string>& arguments);
 /// has then told why, naming the file.
 bool makeReport(const TrajectoryReport& report);
 
-}  // namespace vins
+}  // namespace vins::pipeline

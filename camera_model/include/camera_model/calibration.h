@@ -11,7 +11,7 @@
 #include "camera_model/chessboard.h"
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// How a camera is calibrated.
 struct CalibrationOptions {
@@ -66,4 +66,4 @@ struct Calibration {
 /// no camera of the model explains.
 Calibration calibrate(const CalibrationOptions& options, const std::vector<CalibrationView>& views);
 
-}  // namespace vins
+}  // namespace vins::camera_model

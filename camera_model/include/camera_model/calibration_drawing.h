@@ -6,7 +6,7 @@
 
 #include "camera_model/calibration.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Picture of where the corners of a calibration lie in the image: a dot each (a colour a view,
 /// left-out corners crossed), and the cells of the coverage count, red where they are empty.
@@ -19,4 +19,4 @@ cv::Mat drawCoverage(ImageSize size, const std::vector<CalibrationView>& views,
 cv::Mat drawResiduals(ImageSize size, const std::vector<CalibrationView>& views,
                       const Calibration& calibration);
 
-}  // namespace vins
+}  // namespace vins::camera_model

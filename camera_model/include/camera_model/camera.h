@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-namespace vins {
+namespace vins::camera_model {
 
 /// The camera models, by the names that configuration files give them (model_type).
 enum class CameraModel {
@@ -102,4 +102,4 @@ class Camera {
   ImageSize size_;
 };
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -6,7 +6,7 @@
 #include "camera_model/camera.h"
 #include "vins_core/parameters.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Camera of a file, by its content: camodocal's and VINS-Mono's form (model_type, image_width,
 /// projection_parameters, ...; also inside of a larger configuration file), or Kalibr's camchain,
@@ -27,4 +27,4 @@ std::string toCamodocalYaml(const Camera& camera);
 /// Kalibr has no form for: the Scaramuzza model, and a k3 that is not zero.
 std::string toKalibrYaml(const Camera& camera, const std::string& kalibr_camera = "cam0");
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-namespace vins {
+namespace vins::camera_model {
 
 /// A flat chessboard, by its inner corners.
 struct Chessboard {
@@ -23,9 +23,9 @@ struct Chessboard {
 
 /// Inner corners of the board in an 8-bit gray image, row by row [px], or nothing where it is not
 /// seen whole. OpenCV's sector-based detector looks first (A. Duda, U. Frese, "Accurate detection
-/// and localization of checkerboard corners for calibration", BMVC 2018), its classic one where that
-/// finds none; both are refined to where the gradients around a corner meet.
+/// and localization of checkerboard corners for calibration", BMVC 2018), its classic one where
+/// that finds none; both are refined to where the gradients around a corner meet.
 std::optional<std::vector<Eigen::Vector2d>> detectChessboard(const cv::Mat& gray,
                                                              const Chessboard& board);
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -7,7 +7,7 @@
 #include "camera_model/camera.h"
 #include "camera_model/radial_polynomial.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Equidistant fisheye camera: a ray at the angle t from the axis falls at the distance
 /// f (t + k2 t^3 + k3 t^5 + k4 t^7 + k5 t^9) from the centre (J. Kannala, S. Brandt, "A generic
@@ -34,4 +34,4 @@ class KannalaBrandt : public Camera {
   RadialPolynomial radial_;  ///< of the angle from the axis [rad]
 };
 
-}  // namespace vins
+}  // namespace vins::camera_model

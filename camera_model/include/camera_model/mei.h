@@ -7,7 +7,7 @@
 #include "camera_model/camera.h"
 #include "camera_model/radtan_distortion.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Unified omnidirectional camera: the point goes to the unit sphere, from there through a pinhole
 /// xi above the sphere's centre, and through radial and tangential distortion (C. Mei, P. Rives,
@@ -33,4 +33,4 @@ class Mei : public Camera {
   RadtanDistortion distortion_;
 };
 
-}  // namespace vins
+}  // namespace vins::camera_model

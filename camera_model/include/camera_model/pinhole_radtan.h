@@ -7,7 +7,7 @@
 #include "camera_model/camera.h"
 #include "camera_model/radtan_distortion.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Pinhole camera with radial and tangential distortion, as OpenCV's calib3d has it.
 /// Parameters: fx, fy, cx, cy [px], k1, k2, p1, p2, k3 [-].
@@ -30,4 +30,4 @@ class PinholeRadtan : public Camera {
   RadtanDistortion distortion_;
 };
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace vins {
+namespace vins::camera_model {
 
 /// The odd polynomial d(r) = r (1 + c1 r^2 + c2 r^4 + c3 r^6 + c4 r^8) by which lenses distort a
 /// radius or an angle, with its inverse on the range where it rises.
@@ -61,4 +61,4 @@ class RadialPolynomial {
   std::vector<double> inverse_ratios_;  ///< at equally spaced squared distorted radii
 };
 
-}  // namespace vins
+}  // namespace vins::camera_model

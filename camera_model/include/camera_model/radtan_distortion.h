@@ -7,7 +7,7 @@
 
 #include "camera_model/radial_polynomial.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Radial and tangential lens distortion of the normalized image plane (Brown 1966, in the form and
 /// with the order of coefficients k1, k2, p1, p2, k3 of OpenCV).
@@ -41,4 +41,4 @@ class RadtanDistortion {
   double squared_max_radius_;
 };
 
-}  // namespace vins
+}  // namespace vins::camera_model

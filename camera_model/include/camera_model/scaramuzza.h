@@ -8,7 +8,7 @@
 
 #include "camera_model/camera.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// OCam polynomial camera (D. Scaramuzza, A. Martinelli, R. Siegwart, "A flexible technique for
 /// accurate omnidirectional camera calibration and structure from motion", ICVS 2006), with the
@@ -52,4 +52,4 @@ class Scaramuzza : public Camera {
   std::vector<double> radii_;  ///< at equally spaced angles from the axis
 };
 
-}  // namespace vins
+}  // namespace vins::camera_model

@@ -5,7 +5,7 @@
 
 #include "camera_model/camera.h"
 
-namespace vins {
+namespace vins::camera_model {
 
 /// Where to look for each pixel of an undistorted (and perhaps turned) pinhole image: two maps of
 /// CV_32FC1 for cv::remap. Pixels that the camera does not see map to (-1, -1).
@@ -19,4 +19,4 @@ struct UndistortionMap {
 UndistortionMap makeUndistortionMap(const Camera& camera, const Eigen::Matrix3d& K, ImageSize size,
                                     const Eigen::Matrix3d& R_cv = Eigen::Matrix3d::Identity());
 
-}  // namespace vins
+}  // namespace vins::camera_model

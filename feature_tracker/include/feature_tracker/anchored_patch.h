@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// What came of AnchoredPatch::align().
 struct PatchAlignment {
@@ -52,4 +52,4 @@ class AnchoredPatch {
   Eigen::Matrix2f warp_ = Eigen::Matrix2f::Identity();  ///< from the patch to the image
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

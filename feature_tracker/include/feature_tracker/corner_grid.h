@@ -6,7 +6,7 @@
 
 #include "camera_model/camera.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// What CornerGrid looks for.
 struct CornerGridOptions {
@@ -34,7 +34,7 @@ struct Corner {
 class CornerGrid {
  public:
   /// `mask` is CV_8UC1 of the image's size, zero where no corner may be; or empty.
-  CornerGrid(ImageSize size, const CornerGridOptions& options, cv::Mat mask);
+  CornerGrid(camera_model::ImageSize size, const CornerGridOptions& options, cv::Mat mask);
 
   /// New corners, best first, of the image with these gradients: CV_16SC2 of Scharr's filter (32
   /// times the grey values per pixel), as cv::buildOpticalFlowPyramid() makes them. With `occupied`
@@ -56,7 +56,7 @@ class CornerGrid {
   /// Which corners are near a pixel, by buckets as wide as the smallest distance.
   class Neighbourhood {
    public:
-    Neighbourhood(ImageSize size, double min_distance);
+    Neighbourhood(camera_model::ImageSize size, double min_distance);
     void clear();
     void add(const cv::Point2f& pixel);
     bool isFree(const cv::Point2f& pixel) const;
@@ -75,7 +75,7 @@ class CornerGrid {
   void searchCell(const cv::Mat& gradients, const cv::Rect& area, std::vector<Corner>* corners);
   Corner cornerAt(const cv::Rect& area, int row, int column) const;
 
-  ImageSize size_;
+  camera_model::ImageSize size_;
   CornerGridOptions options_;
   cv::Mat mask_;
   int columns_ = 1;
@@ -89,4 +89,4 @@ class CornerGrid {
   std::vector<Corner> found_in_cell_;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -9,7 +9,7 @@
 
 #include "feature_tracker/anchored_patch.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// Where a camera sees a tracked point, and how that moves.
 struct TrackSight {
@@ -38,4 +38,4 @@ inline cv::Point2f toPoint(const Eigen::Vector2d& pixel) {
   return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
 }
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

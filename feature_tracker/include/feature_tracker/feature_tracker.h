@@ -14,7 +14,7 @@
 #include "vins_core/imu.h"
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// What one image did to the tracks of the first camera.
 struct TrackerStatistics {
@@ -51,8 +51,8 @@ class FeatureTracker {
   /// gyroscope turns by R_bc. `mask` is CV_8UC1 of the first camera's size, 0 where no corner may
   /// be; or empty. Throws InputError for options that are out of range, another number of cameras
   /// or of poses, and a mask of another size.
-  FeatureTracker(std::vector<std::shared_ptr<const Camera>> cameras, std::vector<Pose> T_bc,
-                 const FeatureTrackerOptions& options, cv::Mat mask = {});
+  FeatureTracker(std::vector<std::shared_ptr<const camera_model::Camera>> cameras,
+                 std::vector<Pose> T_bc, const FeatureTrackerOptions& options, cv::Mat mask = {});
   ~FeatureTracker();
   FeatureTracker(FeatureTracker&&) noexcept;
   FeatureTracker& operator=(FeatureTracker&&) noexcept;
@@ -74,4 +74,4 @@ class FeatureTracker {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -10,7 +10,7 @@
 #include "vins_core/imu.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// R_ab of the body at `from` (a) and at `to` (b), by integrating the gyroscope: the rate between
 /// two samples is their mean, before the first and after the last sample theirs. Biases are not
@@ -49,12 +49,14 @@ class TurnPrediction {
 
 /// Pixel of a point far away whose bearing was `bearing` before the camera turned by R_ba (b: the
 /// camera now). Nothing where the camera cannot see it any more.
-std::optional<Eigen::Vector2d> turnedPixel(const Camera& camera, const Eigen::Vector3d& bearing,
+std::optional<Eigen::Vector2d> turnedPixel(const camera_model::Camera& camera,
+                                           const Eigen::Vector3d& bearing,
                                            const Eigen::Quaterniond& R_ba);
 
 /// Angle that a pixel spans about a unit bearing [rad/px]: 1 / sqrt(|det(J B)|), where J is the
 /// Jacobian of the projection there and B an orthonormal basis of the bearing's tangent plane (the
 /// root of the solid angle of a pixel). Nothing where the bearing cannot be projected.
-std::optional<double> angularResolution(const Camera& camera, const Eigen::Vector3d& bearing);
+std::optional<double> angularResolution(const camera_model::Camera& camera,
+                                        const Eigen::Vector3d& bearing);
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

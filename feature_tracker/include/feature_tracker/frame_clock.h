@@ -4,7 +4,7 @@
 
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// What a stamp means for the image that bears it.
 enum class StampVerdict {
@@ -40,4 +40,4 @@ class FrameClock {
   Stamp next_due_ = 0;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -5,7 +5,7 @@
 
 #include "feature_tracker/tracker_options.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// Range of grey values between the darkest and the brightest tenth of an image (CV_8UC1), from
 /// one pixel in 64.
@@ -31,4 +31,4 @@ class ImageEqualizer {
   cv::Ptr<cv::CLAHE> clahe_;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

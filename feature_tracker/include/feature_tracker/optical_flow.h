@@ -7,7 +7,7 @@
 
 #include "camera_model/camera.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// How OpticalFlow follows points.
 struct OpticalFlowOptions {
@@ -84,4 +84,4 @@ double brightnessRatio(const ImagePyramid& from, const ImagePyramid& to,
                        const std::vector<cv::Point2f>& points,
                        const std::vector<cv::Point2f>& tracked);
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

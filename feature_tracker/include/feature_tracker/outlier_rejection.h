@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// One point seen by a camera at two times.
 struct BearingPair {
@@ -105,4 +105,4 @@ class OutlierRejection {
   std::vector<float> squares_;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -9,15 +9,15 @@
 #include "feature_tracker/optical_flow.h"
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// Finds the tracks of the first camera in the second camera of a calibrated stereo rig.
 class StereoMatcher {
  public:
   /// T_10: takes points of the first camera's frame to the second's. `threshold` [px] is allowed
   /// as distance to the epipolar plane.
-  StereoMatcher(std::shared_ptr<const Camera> second, const Pose& T_10, double threshold,
-                const OpticalFlowOptions& options);
+  StereoMatcher(std::shared_ptr<const camera_model::Camera> second, const Pose& T_10,
+                double threshold, const OpticalFlowOptions& options);
 
   /// Fills FeatureTrack::second, from images of the same time, and clears it where the track is
   /// not found, off its epipolar plane, or behind the rig. `interval` [s] is the time since the
@@ -32,7 +32,7 @@ class StereoMatcher {
   bool look(const FeatureTrack& track, const cv::Point2f& pixel, double interval,
             TrackSight* sight) const;
 
-  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const camera_model::Camera> camera_;
   Pose T_10_;
   double threshold_;
   OpticalFlow flow_;
@@ -40,4 +40,4 @@ class StereoMatcher {
   std::vector<std::uint8_t> found_;
 };
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

@@ -6,7 +6,7 @@
 
 #include "vins_core/parameters.h"
 
-namespace vins {
+namespace vins::feature_tracker {
 
 /// When CLAHE (contrast limited adaptive histogram equalization) is applied to the images.
 enum class Equalization {
@@ -45,4 +45,4 @@ std::ostream& operator<<(std::ostream& out, const FeatureTrackerOptions& options
 /// key, what was found and what is allowed.
 FeatureTrackerOptions readFeatureTrackerOptions(const Parameters& parameters);
 
-}  // namespace vins
+}  // namespace vins::feature_tracker

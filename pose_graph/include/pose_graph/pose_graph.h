@@ -21,7 +21,7 @@
 #include "vins_core/keyframe.h"
 #include "vins_core/loop_match.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What came of a keyframe.
 struct PoseGraphResult {
@@ -80,7 +80,7 @@ struct PoseGraphStatistics {
 class PoseGraph {
  public:
   /// Throws InputError for bad options.
-  PoseGraph(const PoseGraphOptions& options, std::shared_ptr<const Camera> camera,
+  PoseGraph(const PoseGraphOptions& options, std::shared_ptr<const camera_model::Camera> camera,
             const PlaceModel& places);
 
   /// A keyframe and its image, CV_8UC1, or none: then the place is not remembered. Ids must rise.
@@ -165,4 +165,4 @@ class PoseGraph {
   OptimizerThread optimizer_;  ///< last: it works on the others
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -11,7 +11,7 @@
 #include "pose_graph/place/place_model.h"
 #include "vins_core/parameters.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What PoseGraph goes by.
 struct PoseGraphOptions {
@@ -67,4 +67,4 @@ struct PoseGraphConfiguration {
 /// what is allowed. A map is loaded only from a folder that is given.
 PoseGraphConfiguration readPoseGraphConfiguration(const Parameters& parameters);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

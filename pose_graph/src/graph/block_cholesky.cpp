@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr int kNone = -1;
@@ -132,4 +132,4 @@ template class BlockCholesky<3>;
 template class BlockCholesky<4>;
 template class BlockCholesky<6>;
 
-}  // namespace vins
+}  // namespace vins::pose_graph

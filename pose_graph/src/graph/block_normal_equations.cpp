@@ -5,7 +5,7 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
-namespace vins {
+namespace vins::pose_graph {
 
 template <int kDim>
 BlockNormalEquations<kDim>::BlockNormalEquations(int unknowns,
@@ -144,4 +144,4 @@ template class BlockNormalEquations<3>;
 template class BlockNormalEquations<4>;
 template class BlockNormalEquations<6>;
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -6,7 +6,7 @@
 #include "graph_problem.h"
 #include "pose_graph/graph/heading.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using State = FourDofModel::State;
@@ -116,4 +116,4 @@ FourDofResult optimizeFourDof(const KeyframeGraph& graph, const FourDofOptions& 
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -8,7 +8,7 @@
 #include "pose_graph/graph/minimizer.h"
 #include "pose_graph/graph/robust_kernel.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A graph of states with errors between pairs of them, as a least-squares problem. `Model` has
 /// - kDim, State, and State plus(const State&, const Segment&): the manifold;
@@ -129,4 +129,4 @@ class GraphProblem : public LeastSquaresProblem {
   Equations equations_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

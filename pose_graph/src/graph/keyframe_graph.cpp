@@ -8,7 +8,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 bool isFinite(const Pose& pose) {
@@ -341,4 +341,4 @@ std::vector<HeadingEdge> KeyframeGraph::edges() const {
   return edges;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 #include <limits>
 #include <tuple>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -90,4 +90,4 @@ std::vector<LoopEdge> redundantLoops(const KeyframeGraph& graph, const ThinningO
   return redundant;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -6,7 +6,7 @@
 
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::VectorXd;
@@ -198,4 +198,4 @@ MinimizerSummary minimize(LeastSquaresProblem* problem, const MinimizerOptions& 
   return Minimization(problem, options).run();
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -1,6 +1,6 @@
 #include "pose_graph/graph/optimizer_thread.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 OptimizerThread::OptimizerThread(SharedKeyframeGraph* graph, const FourDofOptions& options,
                                  Callback on_merged)
@@ -59,4 +59,4 @@ FourDofResult OptimizerThread::runOnce() {
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 GraphTopology::GraphTopology(const RelativePoseGraph& graph) : links(graph.poses.size()) {
   std::unordered_map<std::int64_t, int> numbers;  // only looked up: its order decides nothing
@@ -52,4 +52,4 @@ std::vector<bool> GraphTopology::anchors(const RelativePoseGraph& graph) const {
   return is_anchor;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

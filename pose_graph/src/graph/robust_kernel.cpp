@@ -4,7 +4,7 @@
 
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 double RobustKernel::cost(double squared_error) const {
   const double squared_width = width * width;
@@ -40,4 +40,4 @@ double RobustKernel::weight(double squared_error) const {
 
 void RobustKernel::validate() const { requireWithin("robust kernel", "width", width, {1e-9, 1e9}); }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 #include "graph_problem.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using se3::Matrix6d;
@@ -119,4 +119,4 @@ MinimizerSummary optimizeSixDof(RelativePoseGraph* graph, const SixDofOptions& o
   return graph->planar ? optimize<3>(graph, options) : optimize<6>(graph, options);
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -8,7 +8,7 @@
 #include "pose_graph/graph/block_normal_equations.h"
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::Matrix3d;
@@ -174,4 +174,4 @@ bool startFromChordalRotations(RelativePoseGraph* graph) {
   return true;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

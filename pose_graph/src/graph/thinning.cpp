@@ -8,7 +8,7 @@
 
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -140,4 +140,4 @@ std::vector<std::int64_t> redundantKeyframes(const KeyframeGraph& graph,
   return removed;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::Matrix3d;
@@ -102,4 +102,4 @@ double epipolarError(const LevelBearings& pair, const YawDirection& motion) {
   return std::abs(normal.dot(pair.old)) / std::max(normal.norm(), kEpipoleRadius);
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 void LoopDetectorOptions::validate() const {
   const char* const owner = "loop detector";
@@ -120,4 +120,4 @@ void LoopDetector::remember(std::int64_t id, Stamp stamp, const BagOfWords& bag)
   while (is_old(recent_.front())) recent_.pop_front();
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

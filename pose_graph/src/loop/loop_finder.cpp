@@ -5,7 +5,7 @@
 #include "vins_core/option_check.h"
 #include "vins_core/wall_clock.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 void LoopFinderOptions::validate() const {
   view.validate();
@@ -19,7 +19,7 @@ const LoopVerification* LoopSearch::accepted() const {
   return &checked.back().verification;
 }
 
-LoopFinder::LoopFinder(std::shared_ptr<const Camera> camera, const PlaceModel& places,
+LoopFinder::LoopFinder(std::shared_ptr<const camera_model::Camera> camera, const PlaceModel& places,
                        const LoopFinderOptions& options)
     : camera_(std::move(camera)),
       places_(places),
@@ -97,4 +97,4 @@ const KeyframeView* LoopFinder::view(std::int64_t id) const {
   return found == views_.end() ? nullptr : &found->second;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

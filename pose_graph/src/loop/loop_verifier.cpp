@@ -7,7 +7,7 @@
 
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Eigen::Quaterniond;
@@ -252,4 +252,4 @@ LoopVerification LoopVerifier::verify(const KeyframeView& query, const KeyframeV
   return std::move(problem.result);
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

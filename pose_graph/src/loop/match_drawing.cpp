@@ -7,7 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr int kGap = 8;       // between the images [px]
@@ -62,4 +62,4 @@ cv::Mat drawMatches(const cv::Mat& query_image, const cv::Mat& old_image, const 
   return picture;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -10,7 +10,7 @@
 #include "vins_core/heading.h"
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -87,4 +87,4 @@ std::optional<OdometryComparison> compareWithOdometry(const OdometryGateOptions&
   return comparison;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -6,7 +6,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
@@ -58,4 +58,4 @@ bool refinePose(const std::vector<SeenPoint>& points, double huber, Pose* T_oq) 
   return true;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -4,7 +4,7 @@
 
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 /// The descriptors of some features in a row, and which features they are.
@@ -70,4 +70,4 @@ std::vector<ViewMatch> matchViews(const KeyframeView& query, const KeyframeView&
   return matches;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -17,7 +17,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/text_file.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr double kUnitTolerance = 1e-2;
@@ -265,4 +265,4 @@ void writeG2oFile(const std::string& path, const G2oFile& file) {
   writeTextFile(path, toG2o(file));
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

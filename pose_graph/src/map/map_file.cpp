@@ -10,7 +10,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/text_file.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 /// Records as they lie in the file.
@@ -313,4 +313,4 @@ void MapWriter::write(const std::string& path) const { writeTextFile(path, bytes
 
 StoredMap readMap(const std::string& path) { return MapReader(readBytes(path), path).read(); }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

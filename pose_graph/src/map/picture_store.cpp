@@ -5,7 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace vins {
+namespace vins::pose_graph {
 
 void PictureStore::add(std::int64_t id, const cv::Mat& image) {
   cv::Mat half;
@@ -36,4 +36,4 @@ std::vector<unsigned char> PictureStore::encoded(std::int64_t id) const {
   return found == pictures_.end() ? std::vector<unsigned char>() : found->second;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 std::string readBytes(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": is no file");
@@ -25,4 +25,4 @@ std::uint64_t checksum(const char* bytes, std::size_t count, std::uint64_t start
   return hash;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

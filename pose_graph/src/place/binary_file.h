@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// All bytes of a file. Throws InputError naming it where it is no file or cannot be read.
 std::string readBytes(const std::string& path);
@@ -30,4 +30,4 @@ void append(const std::vector<Number>& numbers, std::string* bytes) {
   bytes->append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -10,7 +10,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/parameters.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr int kLargestOffset = 127;
@@ -132,4 +132,4 @@ DescribedPixels BriefExtractor::describe(const cv::Mat& image,
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

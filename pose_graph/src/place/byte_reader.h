@@ -8,7 +8,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "files are little-endian");
 
@@ -75,4 +75,4 @@ class ByteReader {
   std::size_t at_ = 0;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -8,7 +8,7 @@
 #define VINS_COUNTS_BITS
 #endif
 
-namespace vins {
+namespace vins::pose_graph {
 
 VINS_COUNTS_BITS int hammingDistance(const BriefDescriptor& a, const BriefDescriptor& b) {
   int distance = 0;
@@ -36,4 +36,4 @@ VINS_COUNTS_BITS NearestDescriptor nearestDescriptor(const BriefDescriptor& quer
   return nearest;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -6,12 +6,12 @@
 #include "vins_core/input_error.h"
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 /// The angle between the bearings of pixels on either side of the image's centre.
-double pixelAngleOf(const Camera& camera) {
-  const ImageSize size = camera.imageSize();
+double pixelAngleOf(const camera_model::Camera& camera) {
+  const camera_model::ImageSize size = camera.imageSize();
   const Eigen::Vector2d centre(0.5 * size.width, 0.5 * size.height);
   const auto left = camera.unproject(centre - Eigen::Vector2d(5.0, 0.0));
   const auto right = camera.unproject(centre + Eigen::Vector2d(5.0, 0.0));
@@ -43,7 +43,7 @@ void ViewOptions::validate() const {
   requireWithin("keyframe view", "direct_index_level", direct_index_level, {0, 10});
 }
 
-ViewDescriber::ViewDescriber(const Camera& camera, const Vocabulary& vocabulary,
+ViewDescriber::ViewDescriber(const camera_model::Camera& camera, const Vocabulary& vocabulary,
                              const BriefPattern& pattern, const ViewOptions& options)
     : camera_(&camera),
       vocabulary_(&vocabulary),
@@ -66,7 +66,7 @@ void ViewDescriber::addCorners(const cv::Mat& image, std::vector<cv::Point2f>* p
 }
 
 DescribedView ViewDescriber::describe(const Keyframe& keyframe, const cv::Mat& image) const {
-  const ImageSize size = camera_->imageSize();
+  const camera_model::ImageSize size = camera_->imageSize();
   if (image.cols != size.width || image.rows != size.height) {
     throw InputError("keyframe view: the image has " + std::to_string(image.cols) + "x" +
                      std::to_string(image.rows) + " pixels, the camera " +
@@ -109,4 +109,4 @@ BagOfWords ViewDescriber::findWords(KeyframeView* view) const {
   return std::move(words.bag);
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

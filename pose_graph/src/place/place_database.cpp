@@ -5,7 +5,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 bool isBetter(const PlaceScore& a, const PlaceScore& b) {
@@ -89,4 +89,4 @@ std::vector<PlaceScore> PlaceDatabase::query(const BagOfWords& bag, std::size_t 
   return results;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 #include "place/binary_file.h"
 #include "pose_graph/place/vocabulary_file.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 template <typename Number>
@@ -55,4 +55,4 @@ PlaceModel readPlaceModel(const PlaceModelFiles& files, const std::string& shipp
   return model;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr Stamp kTolerance = 5'000'000;  // [ns]
@@ -25,4 +25,4 @@ cv::Mat RecentImages::find(Stamp stamp) const {
   return nearest == nullptr ? cv::Mat() : nearest->image;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

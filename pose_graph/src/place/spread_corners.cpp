@@ -10,7 +10,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 constexpr int kCornersPerCell = 10;
@@ -69,4 +69,4 @@ std::vector<cv::Point2f> findSpreadCorners(const cv::Mat& image,
   return found;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

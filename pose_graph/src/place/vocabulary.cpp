@@ -7,7 +7,7 @@
 
 #include "vins_core/input_error.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 [[noreturn]] void reject(const std::string& reason) { throw InputError("vocabulary: " + reason); }
@@ -114,4 +114,4 @@ double bagScore(const BagOfWords& a, const BagOfWords& b) {
   return score;
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

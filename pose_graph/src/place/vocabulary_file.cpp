@@ -6,7 +6,7 @@
 #include "place/byte_reader.h"
 #include "vins_core/text_file.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 const char* const kMagic = "VINSVOCB";
@@ -186,4 +186,4 @@ void writeVocabulary(const std::string& path, const Vocabulary& vocabulary) {
   writeTextFile(path, bytes);
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

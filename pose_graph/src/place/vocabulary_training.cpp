@@ -8,7 +8,7 @@
 #include "vins_core/input_error.h"
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::pose_graph {
 namespace {
 
 using Descriptors = std::vector<BriefDescriptor>;
@@ -220,4 +220,4 @@ Vocabulary trainVocabulary(const std::vector<std::vector<BriefDescriptor>>& imag
   return trainer.vocabulary(inverseDocumentFrequencies(images, image_count, tree));
 }
 
-}  // namespace vins
+}  // namespace vins::pose_graph

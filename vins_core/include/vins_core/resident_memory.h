@@ -1,8 +1,8 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <fstream>
+
+#include <unistd.h>
 
 namespace vins {
 

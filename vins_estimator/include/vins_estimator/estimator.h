@@ -19,7 +19,7 @@
 #include "vins_estimator/inertial/rig_calibration.h"
 #include "vins_estimator/window/window_output.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// What the estimator is doing.
 enum class EstimatorStatus { kInitializing, kTracking };
@@ -101,4 +101,4 @@ class Estimator {
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

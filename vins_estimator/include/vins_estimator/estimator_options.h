@@ -6,7 +6,7 @@
 #include "vins_core/parameters.h"
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// How far the camera's pose in the body frame is known (estimate_extrinsic: 0, 1, 2).
 enum class ExtrinsicMode {
@@ -65,4 +65,4 @@ EstimatorOptions readEstimatorOptions(const Parameters& parameters);
 /// gyroscope_noise_density, gyroscope_random_walk, at the top or in a section imu0.
 ImuNoise readImuNoise(const Parameters& parameters);
 
-}  // namespace vins
+}  // namespace vins::estimator

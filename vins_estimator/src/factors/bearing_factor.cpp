@@ -5,7 +5,7 @@
 #include "vins_core/so3.h"
 #include "vins_estimator/factors/parameter_blocks.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Matrix3d;
@@ -134,4 +134,4 @@ bool HostBearingFactor::Evaluate(double const* const* parameters, double* residu
   return true;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -5,7 +5,7 @@
 #include "vins_core/so3.h"
 #include "vins_estimator/factors/parameter_blocks.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Matrix3d;
@@ -115,4 +115,4 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals,
   return true;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -4,7 +4,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 
 using Eigen::Map;
 using Eigen::Quaterniond;
@@ -71,4 +71,4 @@ bool PoseManifold::MinusJacobian(const double* /*x*/, double* jacobian) const {
   return true;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -2,7 +2,7 @@
 
 #include "vins_estimator/factors/parameter_blocks.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 NavState stateOf(const Prior::Part& part, const double* block) {
@@ -75,4 +75,4 @@ bool PriorFactor::Evaluate(double const* const* parameters, double* residuals,
   return true;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -3,7 +3,7 @@
 #include "vins_core/so3.h"
 #include "vins_estimator/factors/bearing_factor.h"
 
-namespace vins {
+namespace vins::estimator {
 
 Eigen::Vector2d uprightResidual(const Eigen::Vector3d& up_b, double inverse_sigma,
                                 const Eigen::Quaterniond& R_wb,
@@ -14,4 +14,4 @@ Eigen::Vector2d uprightResidual(const Eigen::Vector3d& up_b, double inverse_sigm
   return weighted * up;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -2,7 +2,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 
 Eigen::Matrix<double, 6, 1> zeroMotionResidual(const ZeroMotionNoise& noise, const Pose& T_wi,
                                                const Pose& T_wj, Eigen::Matrix<double, 6, 6>* J_i,
@@ -32,4 +32,4 @@ Eigen::Matrix<double, 6, 1> zeroMotionResidual(const ZeroMotionNoise& noise, con
   return residual;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

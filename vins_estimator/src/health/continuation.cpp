@@ -6,7 +6,7 @@
 #include "vins_core/heading.h"
 #include "vins_estimator/inertial/preintegration.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr double kLongestCarry = 1.0;    // [s]: then accelerations can no longer be trusted
@@ -84,4 +84,4 @@ void Continuation::apply(Initialization* initialization) const {
   sigma(kRotation + 2) = std::hypot(sigma(kRotation + 2), last.yaw_sigma);
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -7,7 +7,7 @@
 #include "vins_core/option_check.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 
 void FailureDetectorOptions::validate() const {
   const std::vector<std::pair<const char*, double>> values = {
@@ -46,4 +46,4 @@ std::optional<Failure> detectFailure(const FailureDetectorOptions& options,
   return std::nullopt;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

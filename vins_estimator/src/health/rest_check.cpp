@@ -6,7 +6,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 
 bool looksTheSame(const Landmarks& landmarks, FrameId a, FrameId b, double max_shift,
                   int min_shared) {
@@ -34,4 +34,4 @@ bool looksTheSame(const Landmarks& landmarks, FrameId a, FrameId b, double max_s
   return turn.norm() * shared <= max_shift * resolution + feigned;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -8,7 +8,7 @@
 #include "vins_core/option_check.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Array3d;
@@ -201,4 +201,4 @@ void StillnessDetector::clear() {
   still_ = false;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -1,6 +1,6 @@
 #include "vins_estimator/health/track_watch.h"
 
-namespace vins {
+namespace vins::estimator {
 
 std::optional<Event> TrackWatch::addFrame(Stamp stamp, int tracks) {
   if ((tracks < min_tracks_) == isLost()) return std::nullopt;
@@ -22,4 +22,4 @@ std::optional<Event> TrackWatch::addFrame(Stamp stamp, int tracks) {
                {{"tracks", count}, {"lost_s", seconds}}};
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

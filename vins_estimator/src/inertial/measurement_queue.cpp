@@ -8,7 +8,7 @@
 
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr std::size_t kPeriods = 50;      ///< measured before their median is taken
@@ -263,4 +263,4 @@ void MeasurementQueue::clear() {
   restarted_ = false;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -2,7 +2,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 
 NavState plus(const NavState& state, const Vector15d& d) {
   NavState moved;
@@ -42,4 +42,4 @@ void WindowState::fixMotion() {
   motion_fixed_ = true;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -7,7 +7,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Matrix3d;
@@ -232,4 +232,4 @@ NavState Preintegration::predict(const NavState& state, const Vector3d& g_w) con
   return next;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -3,7 +3,7 @@
 #include "vins_core/option_check.h"
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr std::size_t kMaxSamples = 20000;  ///< waiting for a state, whatever their stamps say
@@ -117,4 +117,4 @@ void Propagator::reset() {
   current_ = {};
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -2,7 +2,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 
 RigCalibration plus(const RigCalibration& calibration, const Vector7d& d) {
   RigCalibration result;
@@ -20,4 +20,4 @@ Vector7d minus(const RigCalibration& to, const RigCalibration& from) {
   return d;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

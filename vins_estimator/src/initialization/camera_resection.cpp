@@ -9,7 +9,7 @@
 #include "vins_core/so3.h"
 #include "vins_estimator/factors/bearing_factor.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -124,4 +124,4 @@ std::optional<Pose> resectCamera(const std::vector<PointSighting>& sightings, co
   return T_sc;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -11,7 +11,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Matrix3d;
@@ -221,4 +221,4 @@ void TurnCalibrator::report(Stamp stamp, const std::optional<TurnCalibration>& f
                       {"sigma_needed_rad", options_.max_sigma}}});
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

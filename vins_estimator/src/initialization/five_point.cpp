@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 /// Polynomials in x, y, z by their coefficients, in the orders
@@ -136,4 +136,4 @@ std::vector<Eigen::Matrix3d> essentialMatrices(const Eigen::Matrix<double, 3, 5>
   return solutions;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

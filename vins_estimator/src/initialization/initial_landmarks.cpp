@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 /// Keeps the tracks with most sightings; among equals those that began first.
@@ -159,4 +159,4 @@ double landmarkRms(const Pose& T_bc, const InitialBlocks& blocks,
   return std::sqrt(landmarkSquares(T_bc, blocks, landmarks) / std::max(1.0, degrees));
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -7,7 +7,7 @@
 #include "vins_core/option_check.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr double kShorterSpan = 0.7;  ///< of the next shorter span that is tried
@@ -229,4 +229,4 @@ void Initializer::report(Stamp stamp) {
   reason_ = WaitingReason();
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -16,7 +16,7 @@
 #include "vins_estimator/factors/parameter_blocks.h"
 #include "vins_estimator/factors/prior_factor.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -215,4 +215,4 @@ JointRefinement refineJointly(const JointRefinementOptions& options, JointProble
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

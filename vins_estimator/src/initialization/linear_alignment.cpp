@@ -5,7 +5,7 @@
 
 #include "vins_estimator/initialization/visual_inertial_alignment.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Index;
@@ -137,4 +137,4 @@ std::optional<LinearAlignment> alignLinearly(const std::vector<Pose>& T_sc, cons
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

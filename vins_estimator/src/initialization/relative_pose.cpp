@@ -15,7 +15,7 @@
 #include "vins_estimator/factors/bearing_factor.h"
 #include "vins_estimator/initialization/five_point.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Matrix3d;
@@ -306,4 +306,4 @@ double medianParallax(const std::vector<BearingPair>& pairs, const Eigen::Quater
   return *middle;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -9,7 +9,7 @@
 #include "vins_core/option_check.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Vector3d;
@@ -116,4 +116,4 @@ std::optional<Initialization> initializeAtRest(
   return initialization;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -8,7 +8,7 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 constexpr double kRobust = 1.5;      ///< residuals beyond it pull with constant force [deviations]
@@ -79,4 +79,4 @@ StructureAdjustment adjustStructure(int max_iterations, double gate, std::vector
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

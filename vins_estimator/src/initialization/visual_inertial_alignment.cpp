@@ -11,7 +11,7 @@
 #include "vins_core/so3.h"
 #include "vins_estimator/initialization/static_initializer.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Matrix3d;
@@ -230,4 +230,4 @@ Alignment align(const VisualStructure& structure, const std::vector<Preintegrati
   return alignment;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -11,7 +11,7 @@
 #include "vins_estimator/initialization/structure_adjustment.h"
 #include "vins_estimator/visual/triangulation.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 /// The newest frame and an older one.
@@ -297,4 +297,4 @@ VisualStructure buildStructure(const std::vector<StructureFrame>& frames, double
   return StructureBuilder(frames, pixel_noise, options, seed).build();
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

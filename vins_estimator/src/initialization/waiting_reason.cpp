@@ -1,6 +1,6 @@
 #include "vins_estimator/initialization/waiting_reason.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 const char* codeOf(StructureStatus status) {
@@ -74,4 +74,4 @@ WaitingReason explain(const Alignment& alignment) {
            {"imu_chi2_per_dof", alignment.imu_chi2}}};
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vins {
+namespace vins::estimator {
 FrameParallax parallaxBetween(const Landmarks& landmarks, FrameId a, FrameId b,
                               const Eigen::Quaterniond& R_ba) {
   FrameParallax result;
@@ -33,4 +33,4 @@ bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& again
   return against_last.shared < min_shared || against_last.parallax >= options.min_parallax;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 TrackObservation toObservation(FrameId frame, const FeatureObservation& feature,
@@ -82,4 +82,4 @@ Eigen::Vector3d positionInWorld(const Landmark& landmark, const Pose& T_wc_host)
   return T_wc_host * Eigen::Vector3d(anchoredDirection(landmark.anchor, landmark.parameters) / rho);
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

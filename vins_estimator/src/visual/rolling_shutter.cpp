@@ -4,7 +4,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Quaterniond;
@@ -47,4 +47,4 @@ FeatureFrame atFirstRow(const FeatureFrame& frame, const RollingShutter& shutter
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -9,7 +9,7 @@
 
 #include "vins_core/option_check.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Matrix3d;
@@ -197,4 +197,4 @@ Triangulation triangulate(const std::vector<TriangulationView>& views,
   return result;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -4,7 +4,7 @@
 
 #include "vins_core/so3.h"
 
-namespace vins {
+namespace vins::estimator {
 
 namespace {
 
@@ -115,4 +115,4 @@ Eigen::Matrix<double, 9, 1> motionShift(const WindowState& state) {
   return minus(state.value(), state.firstEstimate()).tail<9>();
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

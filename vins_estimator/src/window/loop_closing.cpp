@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 const WindowFrame* findKeyframe(const SlidingWindow& window, std::int64_t keyframe_id) {
@@ -79,4 +79,4 @@ void forgetLeavingLoop(SlidingWindow* window) {
   }
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

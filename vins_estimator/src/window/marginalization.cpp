@@ -8,7 +8,7 @@
 #include "vins_estimator/factors/imu_factor.h"
 #include "vins_estimator/window/linearization.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Index;
@@ -262,4 +262,4 @@ void marginalizeOldest(double huber, SlidingWindow* window) {
   window->prior = std::move(prior);
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

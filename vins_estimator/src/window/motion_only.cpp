@@ -10,7 +10,7 @@
 #include "vins_estimator/factors/imu_factor.h"
 #include "vins_estimator/factors/parameter_blocks.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 /// The newest keyframe; the frame before the newest where there is none.
@@ -147,4 +147,4 @@ SolveSummary solveNewestFrames(const WindowSolverOptions& options, SlidingWindow
   return summary;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -5,7 +5,7 @@
 
 #include "vins_estimator/window/linearization.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 /// The frames whose observation of the landmark is beyond the gate.
@@ -70,4 +70,4 @@ int removeOutliers(const OutlierGateOptions& options, SlidingWindow* window) {
   return count + static_cast<int>(outliers.size());
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

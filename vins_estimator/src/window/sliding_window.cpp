@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vins {
+namespace vins::estimator {
 
 WindowValues SlidingWindow::values() const {
   WindowValues values;
@@ -42,4 +42,4 @@ void dropFrame(SlidingWindow* window, std::size_t index) {
   }
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

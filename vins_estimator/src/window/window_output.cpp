@@ -1,6 +1,6 @@
 #include "vins_estimator/window/window_output.h"
 
-namespace vins {
+namespace vins::estimator {
 
 std::vector<LandmarkPoint> landmarkPoints(const SlidingWindow& window) {
   std::vector<LandmarkPoint> points;
@@ -36,4 +36,4 @@ KeyframePoseUpdate poseUpdateOf(const WindowFrame& frame, std::uint32_t sequence
   return {frame.keyframe_id, sequence, frame.stamp, frame.state.value().T_wb};
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

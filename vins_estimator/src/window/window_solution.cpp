@@ -1,7 +1,7 @@
 #include "vins_core/so3.h"
 #include "vins_estimator/window/window_system.h"
 
-namespace vins {
+namespace vins::estimator {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -103,4 +103,4 @@ MatrixXd WindowSystem::information() const {
   return whole(order, order);
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

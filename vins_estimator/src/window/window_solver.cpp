@@ -10,7 +10,7 @@
 #include "vins_estimator/factors/parameter_blocks.h"
 #include "vins_estimator/window/window_system.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Index;
@@ -211,4 +211,4 @@ SolveSummary solveWindow(const WindowSolverOptions& options, SlidingWindow* wind
   return summary;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

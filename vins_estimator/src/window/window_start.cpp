@@ -5,7 +5,7 @@
 
 #include "vins_estimator/visual/triangulation.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 /// The prior on the first state, written about the value it starts with. The rotation's errors are
@@ -78,4 +78,4 @@ int triangulateTracks(SlidingWindow* window) {
   return count;
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -7,7 +7,7 @@
 #include "vins_estimator/factors/imu_factor.h"
 #include "vins_estimator/factors/upright_factor.h"
 
-namespace vins {
+namespace vins::estimator {
 namespace {
 
 using Eigen::Index;
@@ -306,4 +306,4 @@ void WindowSystem::addPrior() {
   }
 }
 
-}  // namespace vins
+}  // namespace vins::estimator

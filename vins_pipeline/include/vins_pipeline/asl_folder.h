@@ -7,7 +7,7 @@
 #include "vins_core/time.h"
 #include "vins_core/trajectory.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// An image of a recording that has not been read yet.
 struct ImageFile {
@@ -39,4 +39,4 @@ AslRecording readAslFolder(const std::string& path, MissingImages missing = Miss
 /// [m/s^2]. Throws InputError with file and line.
 std::vector<ImuSample> readImuCsv(const std::string& path);
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -5,7 +5,7 @@
 
 #include "vins_pipeline/recording.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// A ROS bag. Images: sensor_msgs/Image (grey, colour or Bayer, 8 or 16 bits) or CompressedImage.
 /// IMU: sensor_msgs/Imu. Ground truth, if there: PoseStamped, TransformStamped or PointStamped on
@@ -19,4 +19,4 @@ std::unique_ptr<Recording> openBagRecording(const std::string& path,
 std::unique_ptr<Recording> openRecording(const std::string& path,
                                          const RecordingSelection& selection);
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -9,7 +9,7 @@
 #include "vins_core/pose.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// The topics of a recording, as EuRoC's bags have them.
 namespace topic {
@@ -55,4 +55,4 @@ class BagWriter {
   std::unique_ptr<Bag> bag_;
 };
 
-}  // namespace vins
+}  // namespace vins::pipeline

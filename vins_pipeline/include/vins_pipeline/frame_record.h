@@ -5,7 +5,7 @@
 #include "vins_estimator/estimator.h"
 #include "vins_pipeline/pipeline.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// What the tracker and the estimator had at each frame of a run, as tables: for figures, and for
 /// whoever needs the covariance. The same input gives the same bytes: no times of work are in it.
@@ -27,10 +27,10 @@ class FrameRecord {
   const std::string& estimatorCsv() const { return estimator_csv_; }
 
  private:
-  void add(const Odometry& odometry, const EstimatorStatistics& statistics);
+  void add(const estimator::Odometry& odometry, const estimator::EstimatorStatistics& statistics);
 
   std::string tracker_csv_;
   std::string estimator_csv_;
 };
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -8,7 +8,7 @@
 #include "vins_core/trajectory.h"
 #include "vins_pipeline/pipeline.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// The trajectories of a run with loop closing: as it was known live, and as it is known in the
 /// end. Sequences that no loop has joined to the map are in their own frames.
@@ -21,12 +21,12 @@ class LoopResults {
 
   /// TUM's form, a line for each odometry: moved as the keyframe before it was in the end, or the
   /// first one of its sequence.
-  std::string finalPath(const std::vector<SequencePath>& paths) const;
+  std::string finalPath(const std::vector<pose_graph::SequencePath>& paths) const;
 
   /// VINS-Mono's vins_result_loop.csv, a line for each keyframe of this run, not of a loaded map:
   /// stamp [ns], px,py,pz [m], qw,qx,qy,qz, in the form of its files (a comma at the end of each
   /// line).
-  static std::string vinsMonoCsv(const std::vector<SequencePath>& paths);
+  static std::string vinsMonoCsv(const std::vector<pose_graph::SequencePath>& paths);
 
  private:
   struct Frame {
@@ -38,4 +38,4 @@ class LoopResults {
   std::vector<Frame> frames_;
 };
 
-}  // namespace vins
+}  // namespace vins::pipeline

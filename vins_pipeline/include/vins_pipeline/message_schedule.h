@@ -5,7 +5,7 @@
 
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// A message of one of several streams.
 struct ScheduledMessage {
@@ -18,4 +18,4 @@ struct ScheduledMessage {
 /// streams, and within a stream its own. `arrivals` has the times of each stream [ns].
 std::vector<ScheduledMessage> inOrderOfArrival(const std::vector<std::vector<Stamp>>& arrivals);
 
-}  // namespace vins
+}  // namespace vins::pipeline

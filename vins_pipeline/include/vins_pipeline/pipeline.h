@@ -26,19 +26,19 @@
 #include "vins_estimator/estimator_options.h"
 #include "vins_pipeline/run_record.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// What the stages are made of.
 struct PipelineOptions {
-  std::vector<std::shared_ptr<const Camera>> cameras;
-  FeatureTrackerOptions tracker;
-  EstimatorOptions estimator;
+  std::vector<std::shared_ptr<const camera_model::Camera>> cameras;
+  feature_tracker::FeatureTrackerOptions tracker;
+  estimator::EstimatorOptions estimator;
   cv::Mat mask;  ///< CV_8UC1, 0 where no corner may be; or empty
   std::string imu_topic = "/imu0";
   std::vector<std::string> image_topics = {"/cam0/image_raw"};
-  PoseGraphConfiguration loops;
-  PlaceModel places;  ///< empty: no loop closing, whatever `loops` says
-  std::string map;    ///< a map file to relocalise in; "" for none
+  pose_graph::PoseGraphConfiguration loops;
+  pose_graph::PlaceModel places;  ///< empty: no loop closing, whatever `loops` says
+  std::string map;                ///< a map file to relocalise in; "" for none
 };
 
 /// Reads a rig's configuration file: camera, tracker, estimator, topics. Throws InputError naming
@@ -49,9 +49,10 @@ PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::st
 struct PipelineResult {
   Stamp stamp = 0;  ///< the image's [ns]
   cv::Mat image;    ///< as it was added
-  TrackerStatistics tracker;
-  std::optional<FeatureFrame> frame;       ///< handed to the estimator; none where it was refused
-  std::vector<EstimatorResult> estimates;  ///< of this frame, or of those before that had waited
+  feature_tracker::TrackerStatistics tracker;
+  std::optional<FeatureFrame> frame;  ///< handed to the estimator; none where it was refused
+  std::vector<estimator::EstimatorResult>
+      estimates;  ///< of this frame, or of those before that had waited
   /// The odometries of `estimates` in the map, as known now; none without loop closing.
   std::vector<StampedPose> corrected;
   std::vector<Event> events;                                ///< of all stages, in their order
@@ -79,10 +80,10 @@ class Pipeline {
   void finish() { finished_ = true; }
 
   /// The third stage; null without loop closing.
-  PoseGraph* poseGraph() { return pose_graph_.get(); }
+  pose_graph::PoseGraph* poseGraph() { return pose_graph_.get(); }
 
   /// What `map` has brought; nothing without one.
-  const std::optional<LoadedMap>& loadedMap() const { return loaded_map_; }
+  const std::optional<pose_graph::LoadedMap>& loadedMap() const { return loaded_map_; }
 
   /// Writes the map as it is, with small images where the configuration wants them; how many
   /// keyframes it has. Throws InputError as PoseGraph::save() does, or without loop closing.
@@ -98,16 +99,16 @@ class Pipeline {
   std::vector<ImuSample> samplesUpTo(Stamp stamp);
   void track(const WaitingImage& image, PipelineResult* result);
   void estimate(PipelineResult* result);
-  void closeLoops(const EstimatorResult& estimate, PipelineResult* result);
+  void closeLoops(const estimator::EstimatorResult& estimate, PipelineResult* result);
   void addKeyframe(const Keyframe& keyframe, PipelineResult* result);
 
-  FeatureTracker tracker_;
-  Estimator estimator_;
-  std::unique_ptr<PoseGraph> pose_graph_;
+  feature_tracker::FeatureTracker tracker_;
+  estimator::Estimator estimator_;
+  std::unique_ptr<pose_graph::PoseGraph> pose_graph_;
   bool refines_loops_;
-  RecentImages recent_images_;
-  std::optional<PictureStore> pictures_;  ///< where save_image wants them
-  std::optional<LoadedMap> loaded_map_;
+  pose_graph::RecentImages recent_images_;
+  std::optional<pose_graph::PictureStore> pictures_;  ///< where save_image wants them
+  std::optional<pose_graph::LoadedMap> loaded_map_;
   Stamp offset_;                   ///< td [ns]
   std::deque<ImuSample> samples_;  ///< not yet handed to the tracker
   std::deque<WaitingImage> images_;
@@ -115,4 +116,4 @@ class Pipeline {
   bool finished_ = false;
 };
 
-}  // namespace vins
+}  // namespace vins::pipeline

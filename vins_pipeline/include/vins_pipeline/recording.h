@@ -14,7 +14,7 @@
 #include "vins_core/pose.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// An image of a recording, decoded when asked for.
 struct RecordedImage {
@@ -82,4 +82,4 @@ class Recording {
 std::unique_ptr<Recording> openAslRecording(const std::string& folder,
                                             const RecordingSelection& selection);
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -9,7 +9,7 @@
 #include "vins_core/event.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// How long one piece of work took.
 struct Duration {
@@ -72,4 +72,4 @@ class RunRecord {
 /// The most memory that the process has had [MB, 1e6 bytes].
 double peakMemoryMb();
 
-}  // namespace vins
+}  // namespace vins::pipeline

@@ -12,7 +12,7 @@
 #include "vins_pipeline/pipeline.h"
 #include "vins_pipeline/recording.h"
 
-namespace vins {
+namespace vins::pipeline {
 
 /// The trajectory of a run, pose by pose as each was known when its frame came, and what is to be
 /// said of it.
@@ -40,7 +40,7 @@ class RunResults {
   std::optional<double> initialisedAfter() const;
 
   /// The newest frame has an odometry.
-  bool isTracking() const { return status_ == EstimatorStatus::kTracking; }
+  bool isTracking() const { return status_ == estimator::EstimatorStatus::kTracking; }
 
   /// Sum of the distances between neighbouring positions of the same sequence [m].
   double pathLength() const { return path_length_; }
@@ -55,8 +55,8 @@ class RunResults {
   std::string state() const;
 
  private:
-  void add(const EstimatorResult& estimate);
-  void add(const Odometry& odometry);
+  void add(const estimator::EstimatorResult& estimate);
+  void add(const estimator::Odometry& odometry);
 
   std::string vio_live_;
   std::string vins_mono_csv_;
@@ -68,11 +68,11 @@ class RunResults {
   std::optional<Stamp> first_image_;
   std::optional<Stamp> first_odometry_;
   std::optional<Stamp> last_truth_;
-  std::optional<Odometry> last_odometry_;
-  EstimatorStatus status_ = EstimatorStatus::kInitializing;
+  std::optional<estimator::Odometry> last_odometry_;
+  estimator::EstimatorStatus status_ = estimator::EstimatorStatus::kInitializing;
   double path_length_ = 0.0;
   unsigned resets_ = 0;
   std::map<std::string, std::size_t> warnings_;
 };
 
-}  // namespace vins
+}  // namespace vins::pipeline

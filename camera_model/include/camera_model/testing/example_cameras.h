@@ -8,7 +8,7 @@
 #include "camera_model/pinhole_radtan.h"
 #include "camera_model/scaramuzza.h"
 
-namespace vins::testing {
+namespace vins::camera_model::testing {
 
 inline CameraParameters parametersOf(std::initializer_list<double> values) {
   CameraParameters p(static_cast<int>(values.size()));
@@ -36,4 +36,4 @@ inline std::vector<std::shared_ptr<const Camera>> exampleCameras() {
           parametersOf({-280.0, 0.0, 1.1e-3, -4.0e-7, 1.9e-9, 1.0002, 0.0003, 0.0, 402.0, 397.0}))};
 }
 
-}  // namespace vins::testing
+}  // namespace vins::camera_model::testing

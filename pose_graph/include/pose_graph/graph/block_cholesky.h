@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/StdVector>
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Lower triangle of a symmetric matrix of kDim x kDim blocks, column by column.
 template <int kDim>
@@ -62,4 +62,4 @@ extern template class BlockCholesky<3>;
 extern template class BlockCholesky<4>;
 extern template class BlockCholesky<6>;
 
-}  // namespace vins
+}  // namespace vins::pose_graph

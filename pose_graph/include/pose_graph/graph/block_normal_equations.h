@@ -9,7 +9,7 @@
 
 #include "pose_graph/graph/block_cholesky.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Normal equations H x = -g of a graph: one block of `kDim` unknowns per vertex, one block row per
 /// edge. The pattern is fixed at construction, where the vertices are ordered by approximate
@@ -71,4 +71,4 @@ extern template class BlockNormalEquations<3>;
 extern template class BlockNormalEquations<4>;
 extern template class BlockNormalEquations<6>;
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -6,7 +6,7 @@
 #include "pose_graph/graph/minimizer.h"
 #include "pose_graph/graph/robust_kernel.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Error between two heading frames (T. Qin, P. Li, S. Shen, "VINS-Mono", T-RO 2018, equation 37):
 ///   r = ( (R_z(yaw_i)^T (p_j - p_i) - p_ij) / sigma_p,  wrap(yaw_j - yaw_i - yaw_ij) / sigma_yaw
@@ -61,4 +61,4 @@ struct FourDofResult {
 /// loop are free; that end and all before it stay.
 FourDofResult optimizeFourDof(const KeyframeGraph& graph, const FourDofOptions& options);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

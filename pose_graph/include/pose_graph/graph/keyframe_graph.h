@@ -12,7 +12,7 @@
 #include "vins_core/pose.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Counts runs of the odometry from 0 on. Negative: a run of a loaded map, older than all of these.
 using SequenceNumber = std::int64_t;
@@ -182,4 +182,4 @@ class KeyframeGraph {
   std::vector<LoopEdge> loops_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

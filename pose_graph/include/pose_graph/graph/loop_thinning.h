@@ -5,7 +5,7 @@
 #include "pose_graph/graph/keyframe_graph.h"
 #include "pose_graph/graph/thinning.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Loops that can leave once a map has more than its options allow, so many that `thin_to` of these
 /// are left: one after the other that which another one repeats most. Two loops between the same
@@ -15,4 +15,4 @@ namespace vins {
 /// map falls apart. The same on every run.
 std::vector<LoopEdge> redundantLoops(const KeyframeGraph& graph, const ThinningOptions& options);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

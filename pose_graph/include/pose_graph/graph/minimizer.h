@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// How a step is made of the normal equations.
 enum class MinimizerMethod { kGaussNewton, kLevenbergMarquardt, kDogleg };
@@ -77,4 +77,4 @@ struct MinimizerSummary {
 /// problems", 2004, sections 3.1 to 3.3). One thread, the same result on every run.
 MinimizerSummary minimize(LeastSquaresProblem* problem, const MinimizerOptions& options);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -9,7 +9,7 @@
 #include "pose_graph/graph/four_dof.h"
 #include "pose_graph/graph/keyframe_graph.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A keyframe graph that several threads work on, one at a time.
 class SharedKeyframeGraph {
@@ -70,4 +70,4 @@ class OptimizerThread {
   std::thread thread_;  ///< last: it starts when all else is there
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A pose to be found.
 struct GraphPose {
@@ -50,4 +50,4 @@ struct GraphTopology {
   std::vector<std::vector<Link>> links;  ///< by pose, in the order of the edges
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

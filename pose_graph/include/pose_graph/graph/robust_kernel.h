@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Shapes of the cost of an edge that may be wrong.
 enum class KernelType { kNone, kHuber, kCauchy, kGemanMcClure };
@@ -22,4 +22,4 @@ struct RobustKernel {
   void validate() const;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -9,7 +9,7 @@
 #include "pose_graph/graph/robust_kernel.h"
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Error of a relative pose, r = L log(T_ij^-1 T_i^-1 T_j) with L^T L the information (G. Grisetti,
 /// R. Kuemmerle, C. Stachniss, W. Burgard, "A tutorial on graph-based SLAM", 2010), perturbed on
@@ -59,4 +59,4 @@ MinimizerSummary optimizeSixDof(RelativePoseGraph* graph, const SixDofOptions& o
 /// Whether a symmetric matrix is positive semidefinite, to rounding.
 bool isPositiveSemidefinite(const Eigen::MatrixXd& matrix);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

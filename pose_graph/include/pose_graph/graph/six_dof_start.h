@@ -2,7 +2,7 @@
 
 #include "pose_graph/graph/relative_pose_graph.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Starts for optimizeSixDof(), made of the edges alone: fixed poses (or the first of a connected
 /// part) stay, all others are placed anew. All throw InputError as GraphTopology does.
@@ -23,4 +23,4 @@ void startFromSpanningTree(RelativePoseGraph* graph);
 /// problem has no solution.
 bool startFromChordalRotations(RelativePoseGraph* graph);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -5,7 +5,7 @@
 
 #include "pose_graph/graph/keyframe_graph.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// How many keyframes a map may have, and which of them matter.
 struct ThinningOptions {
@@ -30,4 +30,4 @@ struct ThinningOptions {
 std::vector<std::int64_t> redundantKeyframes(const KeyframeGraph& graph,
                                              const ThinningOptions& options);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -8,7 +8,7 @@
 
 #include "vins_core/heading.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Two views whose roll and pitch are known differ by a yaw and a translation. Everything here is
 /// in level frames, whose z axis is upwards: turned so, that a yaw is all that is left of the
@@ -62,4 +62,4 @@ std::vector<YawDirection> solveThreeBearings(const std::array<LevelBearings, 3>&
 /// near the epipole, where any plane will do.
 double epipolarError(const LevelBearings& pair, const YawDirection& motion);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -8,7 +8,7 @@
 #include "pose_graph/place/place_database.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What LoopDetector goes by.
 struct LoopDetectorOptions {
@@ -82,4 +82,4 @@ class LoopDetector {
   std::vector<Island> last_islands_;  ///< of the keyframe before
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -16,7 +16,7 @@
 #include "pose_graph/place/keyframe_view.h"
 #include "pose_graph/place/place_model.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What LoopFinder goes by.
 struct LoopFinderOptions {
@@ -54,7 +54,7 @@ struct LoopSearch {
 class LoopFinder {
  public:
   /// Throws InputError for bad options.
-  LoopFinder(std::shared_ptr<const Camera> camera, const PlaceModel& places,
+  LoopFinder(std::shared_ptr<const camera_model::Camera> camera, const PlaceModel& places,
              const LoopFinderOptions& options);
 
   /// Says whether a verified loop can be, by what else is known.
@@ -96,7 +96,7 @@ class LoopFinder {
     Stamp stamp;
   };
 
-  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const camera_model::Camera> camera_;
   PlaceModel places_;
   LoopFinderOptions options_;
   ViewDescriber describer_;
@@ -107,4 +107,4 @@ class LoopFinder {
   std::optional<LastLoop> last_loop_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -12,7 +12,7 @@
 #include "pose_graph/place/keyframe_view.h"
 #include "vins_core/loop_match.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What LoopVerifier asks of a loop. Pixels are those at the image's centre.
 struct LoopVerifierOptions {
@@ -102,4 +102,4 @@ class LoopVerifier {
   LoopVerifierOptions options_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

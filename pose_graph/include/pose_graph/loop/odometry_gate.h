@@ -6,7 +6,7 @@
 #include "pose_graph/graph/keyframe_graph.h"
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// How far odometry is trusted against what two images seem to show: several times its usual drift
 /// (0.1 to 1 % of the way), so that poor odometry can still be put right.
@@ -42,4 +42,4 @@ std::optional<OdometryComparison> compareWithOdometry(const OdometryGateOptions&
                                                       std::int64_t query_id, std::int64_t old_id,
                                                       const Pose& T_old_query);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

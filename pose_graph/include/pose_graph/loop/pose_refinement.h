@@ -6,7 +6,7 @@
 
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A point of the query and its bearing in the old camera.
 struct SeenPoint {
@@ -26,4 +26,4 @@ Eigen::Vector3d bearingError(const SeenPoint& seen, const Pose& T_oq,
 /// points do not determine it; then T_oq is as it was.
 bool refinePose(const std::vector<SeenPoint>& points, double huber, Pose* T_oq);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

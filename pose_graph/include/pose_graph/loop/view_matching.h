@@ -4,7 +4,7 @@
 
 #include "pose_graph/place/keyframe_view.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What matchViews() takes for a match.
 struct MatchOptions {
@@ -28,4 +28,4 @@ struct ViewMatch {
 std::vector<ViewMatch> matchViews(const KeyframeView& query, const KeyframeView& old,
                                   const MatchOptions& options);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -6,7 +6,7 @@
 
 #include "pose_graph/graph/relative_pose_graph.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A graph in g2o's text format, with what of the file is not understood.
 ///
@@ -39,4 +39,4 @@ std::string toG2o(const G2oFile& file);
 /// Writes it aside, then renames. Throws InputError where it cannot be written.
 void writeG2oFile(const std::string& path, const G2oFile& file);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

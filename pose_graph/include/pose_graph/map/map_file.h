@@ -11,7 +11,7 @@
 #include "pose_graph/place/place_model.h"
 #include "vins_core/loop_match.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A keyframe of a stored map.
 struct MapKeyframe {
@@ -71,4 +71,4 @@ class MapWriter {
 /// sequence that do not rise, poses that are none.
 StoredMap readMap(const std::string& path);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Small copies of keyframes' images, for pictures of loops: half the size, as JPEG, some 10 kB
 /// each.
@@ -35,4 +35,4 @@ class PictureStore {
   std::map<std::int64_t, std::vector<unsigned char>> pictures_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

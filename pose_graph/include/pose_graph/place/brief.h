@@ -9,7 +9,7 @@
 
 #include "pose_graph/place/descriptor.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Which pixels about a corner BRIEF compares: 256 pairs of whole-pixel offsets.
 /// M. Calonder, V. Lepetit, C. Strecha, P. Fua, "BRIEF: Binary robust independent elementary
@@ -70,4 +70,4 @@ class BriefExtractor {
   BriefPattern pattern_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

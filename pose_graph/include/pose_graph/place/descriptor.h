@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A binary descriptor of 256 bits: bit i is bit i % 64 of word i / 64.
 using BriefDescriptor = std::array<std::uint64_t, 4>;
@@ -26,4 +26,4 @@ struct NearestDescriptor {
 NearestDescriptor nearestDescriptor(const BriefDescriptor& query, const BriefDescriptor* candidates,
                                     std::size_t count);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

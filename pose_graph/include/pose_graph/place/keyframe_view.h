@@ -13,7 +13,7 @@
 #include "pose_graph/place/vocabulary.h"
 #include "vins_core/keyframe.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A described corner of a keyframe's image.
 struct ViewFeature {
@@ -66,8 +66,8 @@ struct DescribedView {
 class ViewDescriber {
  public:
   /// `camera` and `vocabulary` must outlive it.
-  ViewDescriber(const Camera& camera, const Vocabulary& vocabulary, const BriefPattern& pattern,
-                const ViewOptions& options);
+  ViewDescriber(const camera_model::Camera& camera, const Vocabulary& vocabulary,
+                const BriefPattern& pattern, const ViewOptions& options);
 
   /// Describes the keyframe's points where the image (CV_8UC1) shows them, and some hundred corners
   /// besides. Throws InputError where the image's type or size is not the camera's.
@@ -82,11 +82,11 @@ class ViewDescriber {
   void addCorners(const cv::Mat& image, std::vector<cv::Point2f>* pixels,
                   std::vector<ViewFeature>* features) const;
 
-  const Camera* camera_;
+  const camera_model::Camera* camera_;
   const Vocabulary* vocabulary_;
   BriefExtractor brief_;
   ViewOptions options_;
   double pixel_angle_;
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

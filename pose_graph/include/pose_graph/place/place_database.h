@@ -8,7 +8,7 @@
 
 #include "pose_graph/place/vocabulary.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// A place that looks like the one asked for.
 struct PlaceScore {
@@ -62,4 +62,4 @@ class PlaceDatabase {
   std::map<std::int64_t, std::uint32_t> slots_;  ///< by id
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

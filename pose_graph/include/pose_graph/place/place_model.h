@@ -7,7 +7,7 @@
 #include "pose_graph/place/brief.h"
 #include "pose_graph/place/vocabulary.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// By what places are described and told apart. The two belong together: a vocabulary knows only
 /// descriptors of the pattern that it was trained with.
@@ -42,4 +42,4 @@ struct PlaceModelFiles {
 /// InputError naming a file that is not there or broken.
 PlaceModel readPlaceModel(const PlaceModelFiles& files, const std::string& shipped_folder);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

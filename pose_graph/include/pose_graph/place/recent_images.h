@@ -7,7 +7,7 @@
 
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// The last images: a frame is known to be a keyframe only after it.
 class RecentImages {
@@ -34,4 +34,4 @@ class RecentImages {
   std::deque<Entry> images_;  ///< stamps rise
 };
 
-}  // namespace vins
+}  // namespace vins::pose_graph

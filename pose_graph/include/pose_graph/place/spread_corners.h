@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What findSpreadCorners() looks for.
 struct SpreadCornersOptions {
@@ -26,4 +26,4 @@ std::vector<cv::Point2f> findSpreadCorners(const cv::Mat& image,
                                            const std::vector<cv::Point2f>& taken,
                                            const SpreadCornersOptions& options);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

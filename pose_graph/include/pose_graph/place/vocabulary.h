@@ -6,7 +6,7 @@
 
 #include "pose_graph/place/descriptor.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// How much of one visual word an image holds.
 struct WordWeight {
@@ -86,4 +86,4 @@ class Vocabulary {
 /// equation 1).
 double bagScore(const BagOfWords& a, const BagOfWords& b);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

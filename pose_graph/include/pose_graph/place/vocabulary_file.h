@@ -4,7 +4,7 @@
 
 #include "pose_graph/place/vocabulary.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// Reads a vocabulary, of the form that its first bytes tell: this program's, or VINS-Mono's
 /// (brief_k10L6.bin). Throws InputError naming the file, and the place in it, where it cannot be
@@ -24,4 +24,4 @@ Vocabulary readVocabulary(const std::string& path);
 /// left behind. Throws InputError naming the file where it cannot be written.
 void writeVocabulary(const std::string& path, const Vocabulary& vocabulary);
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -6,7 +6,7 @@
 
 #include "pose_graph/place/vocabulary.h"
 
-namespace vins {
+namespace vins::pose_graph {
 
 /// What trainVocabulary() makes.
 struct VocabularyTrainingOptions {
@@ -30,4 +30,4 @@ Vocabulary trainVocabulary(const std::vector<std::vector<BriefDescriptor>>& imag
                            const VocabularyTrainingOptions& options,
                            const std::function<void(double)>& progress = {});
 
-}  // namespace vins
+}  // namespace vins::pose_graph

@@ -7,7 +7,7 @@
 #include "vins_core/tangent_basis.h"
 #include "vins_estimator/inertial/nav_state.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A landmark on the ray of the frame that hosts it (the first that observed it). In the host's
 /// camera it lies at (bearing + basis (u, v)) / rho: rho is the inverse distance [1/m], u and v let
@@ -100,4 +100,4 @@ class HostBearingFactor : public ceres::SizedCostFunction<2, 3> {
   const LandmarkAnchor& anchor_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -6,7 +6,7 @@
 #include "vins_estimator/inertial/nav_state.h"
 #include "vins_estimator/inertial/preintegration.h"
 
-namespace vins {
+namespace vins::estimator {
 
 using Matrix15x6d = Eigen::Matrix<double, 15, 6>;
 using Matrix15x9d = Eigen::Matrix<double, 15, 9>;
@@ -51,4 +51,4 @@ class ImuFactor : public ceres::SizedCostFunction<15, 7, 9, 7, 9> {
   const WindowState& j_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -6,7 +6,7 @@
 
 #include "vins_estimator/inertial/nav_state.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A pose as Ceres holds it: position x y z, quaternion x y z w.
 using PoseBlock = std::array<double, 7>;
@@ -34,4 +34,4 @@ class PoseManifold : public ceres::Manifold {
   bool MinusJacobian(const double* x, double* jacobian) const override;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

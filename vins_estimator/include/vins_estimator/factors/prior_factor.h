@@ -8,7 +8,7 @@
 #include "vins_estimator/inertial/nav_state.h"
 #include "vins_estimator/inertial/rig_calibration.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// What is known of a group of states in square-root form: residual = A d + b, d being the states'
 /// differences from the values `at`, stacked: six numbers for a pose (position, rotation), nine for
@@ -49,4 +49,4 @@ class PriorFactor : public ceres::CostFunction {
   const Prior& prior_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

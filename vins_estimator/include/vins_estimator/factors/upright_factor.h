@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace vins {
+namespace vins::estimator {
 
 /// Weighted residual of a body of which roll and pitch are known, while it may turn about the
 /// vertical and stand anywhere: the vertical, seen in the body frame, against the one known there
@@ -13,4 +13,4 @@ Eigen::Vector2d uprightResidual(const Eigen::Vector3d& up_b, double inverse_sigm
                                 const Eigen::Quaterniond& R_wb,
                                 Eigen::Matrix<double, 2, 3>* J_rotation);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -4,7 +4,7 @@
 
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// How still a body stands that is found to stand still.
 struct ZeroMotionNoise {
@@ -20,4 +20,4 @@ Eigen::Matrix<double, 6, 1> zeroMotionResidual(const ZeroMotionNoise& noise, con
                                                const Pose& T_wj, Eigen::Matrix<double, 6, 6>* J_i,
                                                Eigen::Matrix<double, 6, 6>* J_j);
 
-}  // namespace vins
+}  // namespace vins::estimator

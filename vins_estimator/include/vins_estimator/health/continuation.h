@@ -8,7 +8,7 @@
 #include "vins_estimator/inertial/nav_state.h"
 #include "vins_estimator/initialization/initialization.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Carries the last credible state over a reset, so that the odometry goes on where it was instead
 /// of jumping to the origin. The IMU alone carries it on for a second; then the body is taken to
@@ -45,4 +45,4 @@ class Continuation {
   std::deque<Entry> entries_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -4,7 +4,7 @@
 
 #include "vins_estimator/inertial/nav_state.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// What a state must keep to be credible. No vehicle that carries a camera to look with comes near
 /// these figures while the estimate is sound.
@@ -32,4 +32,4 @@ std::optional<Failure> detectFailure(const FailureDetectorOptions& options,
                                      const NavState& predicted, const NavState& solved,
                                      const Matrix15d& covariance);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -8,7 +8,7 @@
 #include "vins_core/feature_frame.h"
 #include "vins_core/imu.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Thresholds of StillnessDetector. The inertial ones hold for means over blocks of 0.1 s: idling
 /// motors shake an IMU by 1 m/s^2 (EuRoC MH_01), of which the means keep a tenth.
@@ -87,4 +87,4 @@ class StillnessDetector {
   bool still_ = false;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

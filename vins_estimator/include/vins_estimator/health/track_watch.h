@@ -5,7 +5,7 @@
 #include "vins_core/event.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Tells when the images no longer carry the estimate (a blackout, blur, a covered lens), and when
 /// they do again: events `tracking_lost` and `tracking_resumed`.
@@ -25,4 +25,4 @@ class TrackWatch {
   std::optional<Stamp> lost_since_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

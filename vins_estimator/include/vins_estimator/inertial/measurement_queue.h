@@ -12,7 +12,7 @@
 #include "vins_core/imu.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Options of the measurement queue.
 struct MeasurementQueueOptions {
@@ -112,4 +112,4 @@ class MeasurementQueue {
   bool restarted_ = false;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

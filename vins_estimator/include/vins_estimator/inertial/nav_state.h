@@ -5,7 +5,7 @@
 #include "vins_core/pose.h"
 #include "vins_core/time.h"
 
-namespace vins {
+namespace vins::estimator {
 
 using Vector15d = Eigen::Matrix<double, 15, 1>;
 using Matrix15d = Eigen::Matrix<double, 15, 15>;
@@ -85,4 +85,4 @@ class WindowState {
   bool ignore_first_estimates_ = false;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

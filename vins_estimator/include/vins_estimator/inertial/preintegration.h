@@ -8,7 +8,7 @@
 #include "vins_core/imu.h"
 #include "vins_estimator/inertial/nav_state.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// What the IMU says between two times i and j, free of the state at i: the increments of position
 /// alpha, rotation gamma and velocity beta, in the body frame at i. Midpoint integration; error
@@ -105,4 +105,4 @@ class Preintegration {
   mutable bool sqrt_information_known_ = false;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -10,7 +10,7 @@
 #include "vins_core/time.h"
 #include "vins_estimator/inertial/nav_state.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A state carried by the IMU from the last solved one.
 struct PropagatedState {
@@ -68,4 +68,4 @@ class Propagator {
   PropagatedState current_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -4,7 +4,7 @@
 
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::estimator {
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
@@ -22,4 +22,4 @@ RigCalibration plus(const RigCalibration& calibration, const Vector7d& d);
 /// d with plus(from, d) = to.
 Vector7d minus(const RigCalibration& to, const RigCalibration& from);
 
-}  // namespace vins
+}  // namespace vins::estimator

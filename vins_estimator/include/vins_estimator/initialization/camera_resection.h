@@ -7,7 +7,7 @@
 
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A known point on a measured ray.
 struct PointSighting {
@@ -33,4 +33,4 @@ struct ResectionOptions {
 std::optional<Pose> resectCamera(const std::vector<PointSighting>& sightings, const Pose& start,
                                  const ResectionOptions& options = {});
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -12,7 +12,7 @@
 #include "vins_estimator/inertial/measurement_queue.h"
 #include "vins_estimator/initialization/relative_pose.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A turn between two frames that gyroscope and camera have both seen, as rotation vectors:
 /// phi_b + (td - td_used) (w_end - w_begin) - b duration = R_bc phi_c.
@@ -104,4 +104,4 @@ class TurnCalibrator {
   std::vector<Event> events_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace vins {
+namespace vins::estimator {
 
 /// The essential matrices, at most ten, of five pairs of bearings: b2^T E b1 = 0 (unit vectors, any
 /// camera). Empty where the pairs are degenerate. E lies in the four-dimensional null space of the
@@ -15,4 +15,4 @@ namespace vins {
 std::vector<Eigen::Matrix3d> essentialMatrices(const Eigen::Matrix<double, 3, 5>& bearings_1,
                                                const Eigen::Matrix<double, 3, 5>& bearings_2);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -13,7 +13,7 @@
 #include "vins_estimator/factors/parameter_blocks.h"
 #include "vins_estimator/inertial/nav_state.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A feature in the frames of an initialization.
 struct InitialTrack {
@@ -89,4 +89,4 @@ double landmarkSquares(const Pose& T_bc, const InitialBlocks& blocks,
 double landmarkRms(const Pose& T_bc, const InitialBlocks& blocks,
                    const std::vector<InitialLandmark>& landmarks);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -6,7 +6,7 @@
 #include "vins_estimator/inertial/nav_state.h"
 #include "vins_estimator/inertial/preintegration.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A frame of the first window.
 struct InitialFrame {
@@ -27,4 +27,4 @@ struct Initialization {
   Vector15d sigma = Vector15d::Ones();
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

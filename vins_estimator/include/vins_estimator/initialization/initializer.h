@@ -20,7 +20,7 @@
 #include "vins_estimator/initialization/visual_structure.h"
 #include "vins_estimator/initialization/waiting_reason.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Options of Initializer.
 struct InitializerOptions {
@@ -98,4 +98,4 @@ class Initializer {
   std::mt19937_64 engine_;
 };
 
-}  // namespace vins
+}  // namespace vins::estimator

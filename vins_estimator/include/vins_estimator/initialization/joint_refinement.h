@@ -9,7 +9,7 @@
 #include "vins_estimator/inertial/preintegration.h"
 #include "vins_estimator/initialization/initial_landmarks.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Options of refineJointly().
 struct JointRefinementOptions {
@@ -50,4 +50,4 @@ struct JointRefinement {
 /// larger by the root of the residuals' chi-square per degree of freedom where that is above one.
 JointRefinement refineJointly(const JointRefinementOptions& options, JointProblem* problem);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -8,7 +8,7 @@
 
 #include "vins_core/pose.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A track in two images.
 struct BearingPair {
@@ -56,4 +56,4 @@ Eigen::Quaterniond fitRotation(const std::vector<BearingPair>& pairs,
 /// deviations of a bearing.
 double medianParallax(const std::vector<BearingPair>& pairs, const Eigen::Quaterniond& R_12);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -7,7 +7,7 @@
 #include "vins_estimator/inertial/measurement_queue.h"
 #include "vins_estimator/initialization/initialization.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Options of initializeAtRest().
 struct StaticInitializerOptions {
@@ -41,4 +41,4 @@ std::optional<Initialization> initializeAtRest(
     const std::vector<const FrameMeasurements*>& interval, const ImuNoise& noise,
     const StaticInitializerOptions& options = {});
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -5,7 +5,7 @@
 #include "vins_core/pose.h"
 #include "vins_estimator/initialization/initial_landmarks.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// How an adjustment of a structure ended.
 struct StructureAdjustment {
@@ -21,4 +21,4 @@ struct StructureAdjustment {
 StructureAdjustment adjustStructure(int max_iterations, double gate, std::vector<Pose>* T_sc,
                                     std::vector<InitialLandmark>* landmarks);
 
-}  // namespace vins
+}  // namespace vins::estimator

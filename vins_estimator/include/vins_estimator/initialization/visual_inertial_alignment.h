@@ -11,7 +11,7 @@
 #include "vins_estimator/initialization/joint_refinement.h"
 #include "vins_estimator/initialization/visual_structure.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Options of align().
 struct AlignmentOptions {
@@ -100,4 +100,4 @@ double addedChiSquare(const VisualStructure& structure, const JointProblem& solu
 Alignment align(const VisualStructure& structure, const std::vector<Preintegration>& imu,
                 const Pose& T_bc, const AlignmentOptions& options);
 
-}  // namespace vins
+}  // namespace vins::estimator

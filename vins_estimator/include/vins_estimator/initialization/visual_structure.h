@@ -11,7 +11,7 @@
 #include "vins_estimator/initialization/initial_landmarks.h"
 #include "vins_estimator/initialization/relative_pose.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Options of buildStructure().
 struct VisualStructureOptions {
@@ -71,4 +71,4 @@ struct VisualStructure {
 VisualStructure buildStructure(const std::vector<StructureFrame>& frames, double pixel_noise,
                                const VisualStructureOptions& options, std::uint64_t seed);
 
-}  // namespace vins
+}  // namespace vins::estimator

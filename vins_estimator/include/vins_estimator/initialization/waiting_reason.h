@@ -7,7 +7,7 @@
 #include "vins_estimator/initialization/visual_inertial_alignment.h"
 #include "vins_estimator/initialization/visual_structure.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Why an attempt at initialization has failed, as an event says it: code, what is the matter and
 /// what to do, figures.
@@ -26,4 +26,4 @@ WaitingReason explain(const VisualStructure& structure);
 /// Of an alignment that is not ok().
 WaitingReason explain(const Alignment& alignment);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -4,7 +4,7 @@
 
 #include "vins_estimator/visual/landmarks.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// How far two frames are apart for the camera.
 struct FrameParallax {
@@ -35,4 +35,4 @@ KeyframeChoiceOptions restingChoice(KeyframeChoiceOptions moving);
 bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& against_last, int tracks,
                 double seconds);
 
-}  // namespace vins
+}  // namespace vins::estimator

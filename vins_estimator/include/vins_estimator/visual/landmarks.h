@@ -11,7 +11,7 @@
 #include "vins_core/pose.h"
 #include "vins_estimator/factors/bearing_factor.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A frame of the window, by a number that counts frames and is never used again.
 using FrameId = std::int64_t;
@@ -73,4 +73,4 @@ class Landmarks {
 /// Place in the world of a landmark that has depth, whose host's camera stood at T_wc [m].
 Eigen::Vector3d positionInWorld(const Landmark& landmark, const Pose& T_wc_host);
 
-}  // namespace vins
+}  // namespace vins::estimator

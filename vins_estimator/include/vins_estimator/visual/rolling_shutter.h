@@ -8,7 +8,7 @@
 #include "vins_core/feature_frame.h"
 #include "vins_core/imu.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A camera that reads its rows one after the other.
 struct RollingShutter {
@@ -29,4 +29,4 @@ struct RollingShutter {
 FeatureFrame atFirstRow(const FeatureFrame& frame, const RollingShutter& shutter,
                         const std::vector<ImuSample>& gyro, const Eigen::Vector3d& mean_rate_b);
 
-}  // namespace vins
+}  // namespace vins::estimator

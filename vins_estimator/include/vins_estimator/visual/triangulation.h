@@ -7,7 +7,7 @@
 #include "vins_core/pose.h"
 #include "vins_estimator/factors/bearing_factor.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// One ray on which a landmark has been seen.
 struct TriangulationView {
@@ -63,4 +63,4 @@ double largestParallax(const std::vector<TriangulationView>& views);
 Triangulation triangulate(const std::vector<TriangulationView>& views,
                           const TriangulationOptions& options = {});
 
-}  // namespace vins
+}  // namespace vins::estimator

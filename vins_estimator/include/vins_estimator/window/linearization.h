@@ -7,7 +7,7 @@
 
 #include "vins_estimator/window/sliding_window.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Added to the diagonal of a landmark's own information, which may be next to nothing along its
 /// depth.
@@ -71,4 +71,4 @@ LinearizedLandmark linearize(const SlidingWindow& window, const WindowGeometry& 
 Eigen::Matrix<double, 6, 1> poseShift(const WindowState& state);
 Eigen::Matrix<double, 9, 1> motionShift(const WindowState& state);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -6,7 +6,7 @@
 #include "vins_estimator/window/sliding_window.h"
 #include "vins_estimator/window/window_solver.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Takes a verified loop into the window, in place of an earlier one: what the old keyframe saw of
 /// the window's tracks becomes measurements. `match_noise`: deviation of a feature that was found
@@ -26,4 +26,4 @@ void forgetFadedLoop(int min_matches, SlidingWindow* window);
 /// Forgets the loop if its query keyframe is the oldest frame, which is about to go.
 void forgetLeavingLoop(SlidingWindow* window);
 
-}  // namespace vins
+}  // namespace vins::estimator

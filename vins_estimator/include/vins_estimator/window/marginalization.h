@@ -2,7 +2,7 @@
 
 #include "vins_estimator/window/sliding_window.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Turns what is known of the oldest frame into a prior on the frames that stay, and takes it out:
 /// its IMU interval to the next frame, the prior so far, and the landmarks it hosts that are no
@@ -14,4 +14,4 @@ namespace vins {
 /// see WindowSolverOptions.
 void marginalizeOldest(double huber, SlidingWindow* window);
 
-}  // namespace vins
+}  // namespace vins::estimator

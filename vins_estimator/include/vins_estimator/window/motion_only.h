@@ -2,7 +2,7 @@
 
 #include "vins_estimator/window/window_solver.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Motion-only visual-inertial bundle adjustment: moves the frames after the newest keyframe only,
 /// with all else as it stands - keyframes, landmarks, calibration (VINS-Mono, section VI-E). Costs
@@ -10,4 +10,4 @@ namespace vins {
 /// information, is the last keyframe's, carried on by the IMU: too large rather than too small.
 SolveSummary solveNewestFrames(const WindowSolverOptions& options, SlidingWindow* window);
 
-}  // namespace vins
+}  // namespace vins::estimator

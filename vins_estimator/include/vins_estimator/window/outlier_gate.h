@@ -2,7 +2,7 @@
 
 #include "vins_estimator/window/sliding_window.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// What a solution must leave behind.
 struct OutlierGateOptions {
@@ -15,4 +15,4 @@ struct OutlierGateOptions {
 /// out where none can be. Returns how many observations went.
 int removeOutliers(const OutlierGateOptions& options, SlidingWindow* window);
 
-}  // namespace vins
+}  // namespace vins::estimator

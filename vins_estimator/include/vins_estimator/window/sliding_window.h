@@ -17,7 +17,7 @@
 #include "vins_estimator/inertial/rig_calibration.h"
 #include "vins_estimator/visual/landmarks.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// One frame of the window.
 struct WindowFrame {
@@ -79,4 +79,4 @@ struct SlidingWindow {
 /// becomes part of the next frame's.
 void dropFrame(SlidingWindow* window, std::size_t index);
 
-}  // namespace vins
+}  // namespace vins::estimator

@@ -9,7 +9,7 @@
 #include "vins_core/keyframe.h"
 #include "vins_estimator/window/sliding_window.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// A landmark of the window in the world, for pictures.
 struct LandmarkPoint {
@@ -26,4 +26,4 @@ Keyframe keyframeOf(const SlidingWindow& window, std::size_t index, std::uint32_
 /// The last word on a keyframe that is about to leave.
 KeyframePoseUpdate poseUpdateOf(const WindowFrame& frame, std::uint32_t sequence);
 
-}  // namespace vins
+}  // namespace vins::estimator

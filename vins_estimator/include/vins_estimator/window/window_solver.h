@@ -4,7 +4,7 @@
 
 #include "vins_estimator/window/sliding_window.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// Options of a window's solution.
 struct WindowSolverOptions {
@@ -41,4 +41,4 @@ struct SolveSummary {
 /// one small dense residual, which costs a third of handing it each observation.
 SolveSummary solveWindow(const WindowSolverOptions& options, SlidingWindow* window);
 
-}  // namespace vins
+}  // namespace vins::estimator

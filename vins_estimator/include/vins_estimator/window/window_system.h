@@ -9,7 +9,7 @@
 #include "vins_estimator/window/linearization.h"
 #include "vins_estimator/window/sliding_window.h"
 
-namespace vins {
+namespace vins::estimator {
 
 /// The window's least-squares problem with all but the poses (and the rig's calibration) eliminated
 /// by hand: landmarks by the Schur complement of their 3x3 blocks, velocities and biases by a
@@ -123,4 +123,4 @@ class WindowSystem {
   Eigen::VectorXd y_;  ///< L^-1 g
 };
 
-}  // namespace vins
+}  // namespace vins::estimator
