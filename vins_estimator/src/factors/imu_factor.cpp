@@ -101,6 +101,7 @@ Matrix15d carriedCovariance(const Preintegration& imu, const Vector3d& g_w, cons
 
 bool ImuFactor::Evaluate(double const* const* parameters, double* residuals,
                          double** jacobians) const {
+  if (!imu_.isWeightable()) return false;
   const NavState i = toNavState(parameters[0], parameters[1]);
   const NavState j = toNavState(parameters[2], parameters[3]);
   const Matrix15d& weight = imu_.sqrtInformation();

@@ -68,7 +68,10 @@ Preintegration::MissedMotion missedMotion(double dt, int steps) {
 /// What the noise of one step adds. White noise of density s acts as one error of variance
 /// s^2 / dt, constant over the step: the sum over many steps then has the variance s^2 t that the
 /// density says. (Two half-errors, one a reading, would be counted as independent in neighbouring
-/// steps, which share a reading, and halve it.)
+/// steps, which share a reading, and halve it.) Within the step the noise is white as well, which
+/// leaves the position an error of variance s^2 dt^3 / 12 that the velocity does not share (the
+/// integral of a Wiener process about its mean slope): without it the covariance of an interval of
+/// one step is singular.
 Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise,
                     const Preintegration::MissedMotion& missed, const Matrix15d& F) {
   const double acc =
@@ -79,6 +82,7 @@ Matrix15d stepNoise(const Midpoint& m, const ImuNoise& noise,
   const Eigen::Matrix<double, 9, 3> G_gyr = F.block<9, 3>(0, kGyrBias);
   Matrix15d Q = Matrix15d::Zero();
   Q.topLeftCorner<9, 9>() = acc * G_acc * G_acc.transpose() + gyr * G_gyr * G_gyr.transpose();
+  Q.diagonal().segment<3>(kPosition).array() += acc * std::pow(m.dt, 4) / 12.0;
   const double acc_walk = noise.accelerometer_walk * noise.accelerometer_walk * m.dt;
   const double gyr_walk = noise.gyroscope_walk * noise.gyroscope_walk * m.dt;
   Q.diagonal().segment<3>(kAccBias).array() += acc_walk;
@@ -102,6 +106,18 @@ double readingVariance(const std::vector<ImuSample>& samples) {
 /// Least density of an accelerometer at rest [m/s^2/sqrt(Hz)]: a minute tells gravity to 0.04
 /// degrees.
 constexpr double kAtRest = 0.05;
+
+/// Least deviations of an interval's increments, below those of a usual camera period. Intervals
+/// far shorter than an IMU period would otherwise weigh so much that the solution loses its digits.
+Vector15d leastDeviations() {
+  Vector15d sigma;
+  sigma.segment<3>(kPosition).setConstant(1e-6);  // [m]
+  sigma.segment<3>(kRotation).setConstant(3e-7);  // [rad]
+  sigma.segment<3>(kVelocity).setConstant(1e-6);  // [m/s]
+  sigma.segment<3>(kAccBias).setConstant(1e-6);   // [m/s^2]
+  sigma.segment<3>(kGyrBias).setConstant(3e-7);   // [rad/s]
+  return sigma;
+}
 
 /// The noise of a piece: raised by what of its vibration does not average out.
 ImuNoise noiseOf(const ImuNoise& usual, const std::vector<ImuSample>& samples) {
@@ -202,14 +218,29 @@ bool Preintegration::needsReintegration(const Vector3d& accelerometer_bias,
          (accelerometer_bias - accelerometer_bias_).norm() * duration_ > kSpeed;
 }
 
+bool Preintegration::isWeightable() const {
+  if (!sqrt_information_known_) computeSqrtInformation();
+  return is_weightable_;
+}
+
 const Matrix15d& Preintegration::sqrtInformation() const {
-  if (!sqrt_information_known_) {
-    // S = L^T with covariance^-1 = L L^T.
-    const Matrix15d information = covariance_.llt().solve(Matrix15d::Identity());
-    sqrt_information_ = information.llt().matrixU();
-    sqrt_information_known_ = true;
-  }
+  if (!sqrt_information_known_) computeSqrtInformation();
   return sqrt_information_;
+}
+
+void Preintegration::computeSqrtInformation() const {
+  sqrt_information_known_ = true;
+  sqrt_information_.setZero();
+  Matrix15d covariance = covariance_;
+  covariance.diagonal() += leastDeviations().cwiseAbs2();
+  // Scaled to a unit diagonal first: the units of the fifteen errors differ by orders of magnitude.
+  const Vector15d scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Matrix15d> llt(scale.asDiagonal() * covariance * scale.asDiagonal());
+  is_weightable_ = scale.allFinite() && llt.info() == Eigen::Success;
+  if (!is_weightable_) return;
+  sqrt_information_ = scale.asDiagonal();
+  llt.matrixL().solveInPlace(sqrt_information_);
+  is_weightable_ = sqrt_information_.allFinite();
 }
 
 Preintegration::Increments Preintegration::corrected(const Vector3d& accelerometer_bias,

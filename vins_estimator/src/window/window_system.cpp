@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "vins_estimator/factors/imu_factor.h"
@@ -128,6 +129,7 @@ double WindowSystem::cost(const Point& point) const {
   const std::vector<NavState>& states = point.values.states;
   for (std::size_t i = 1; i < frameCount(); ++i) {
     const Preintegration& imu = window_.frames[i].imu;
+    if (!imu.isWeightable()) return std::numeric_limits<double>::infinity();
     const Vector15d r = imuResidual(imu, window_.g_w, states[i - 1], states[i]);
     cost += 0.5 * (imu.sqrtInformation() * r).squaredNorm();
   }

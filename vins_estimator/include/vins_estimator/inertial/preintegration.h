@@ -57,7 +57,11 @@ class Preintegration {
   const Matrix15d& jacobian() const { return jacobian_; }
   /// Covariance of the increments' errors (alpha, theta, beta, ba, bg).
   const Matrix15d& covariance() const { return covariance_; }
-  /// Upper triangular S with S^T S = covariance()^-1. Computed when asked for the first time.
+  /// Whether the covariance can be inverted. False only where it is not finite.
+  bool isWeightable() const;
+  /// Lower triangular S with S^T S = (covariance() + F)^-1; F floors the deviations of very short
+  /// intervals at some 1e-6 of a unit. Zero where the interval is not weightable. Computed when
+  /// asked for the first time.
   const Matrix15d& sqrtInformation() const;
 
   struct Increments {
@@ -85,6 +89,7 @@ class Preintegration {
     std::vector<ImuSample> samples;
     bool at_rest;
   };
+  void computeSqrtInformation() const;
   void integratePiece(const Piece& piece);
   void bridge(const ImuSample& from, const ImuSample& to, const ImuNoise& noise);
   void step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise,
@@ -103,6 +108,7 @@ class Preintegration {
   Matrix15d covariance_ = Matrix15d::Zero();
   mutable Matrix15d sqrt_information_;
   mutable bool sqrt_information_known_ = false;
+  mutable bool is_weightable_ = false;
 };
 
 }  // namespace vins::estimator
