@@ -52,7 +52,7 @@ void FeatureTrackerRos::readConfiguration() {
   const cv::Mat mask = readMaskFile(options_.mask_file, rig_.cameras.front()->imageSize());
   tracker_ = std::make_unique<FeatureTracker>(rig_.cameras, rig_.T_bc, options_, mask);
   uses_imu_ = rig_.rotation_known && !rig_.imu_topic.empty();
-  queue_ = std::make_unique<InputQueue>(rig_.cameras.size() == 2, uses_imu_);
+  queue_ = std::make_unique<InputQueue>(rig_.cameras.size() == 2, uses_imu_, rig_.td);
   std::ostringstream text;
   text << options_;
   ROS_INFO_STREAM("feature tracker, from " << parameters.name() << ":\n" << text.str());

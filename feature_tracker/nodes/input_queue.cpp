@@ -6,11 +6,10 @@
 namespace vins::feature_tracker {
 namespace {
 
-constexpr std::size_t kMostImages = 10;
-constexpr std::size_t kMostSamples = 4000;
+constexpr std::size_t kMostImages = 30;
 constexpr Stamp kSameTime = 3'000'000;  // between the images of a stereo pair [ns]
-constexpr std::chrono::milliseconds kPatience(50);
-constexpr std::chrono::milliseconds kPoll(5);
+constexpr std::chrono::milliseconds kPartnerPatience(50);
+constexpr std::chrono::milliseconds kImuPatience(1000);
 
 }  // namespace
 
@@ -27,10 +26,8 @@ void InputQueue::addImage(int camera, QueuedImage image) {
 
 void InputQueue::addImu(const ImuSample& sample) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  // After a jump back the samples from before it are of no use.
-  if (!samples_.empty() && sample.stamp < samples_.back().stamp) samples_.clear();
-  samples_.push_back(sample);
-  if (samples_.size() > kMostSamples) samples_.pop_front();
+  gyroscope_.add(sample);
+  imu_is_silent_ = false;
   changed_.notify_one();
 }
 
@@ -42,13 +39,22 @@ bool InputQueue::partnerIsDecided(const QueuedImage& image) const {
   return false;
 }
 
-bool InputQueue::isReady() const {
-  if (images_[0].empty()) return false;
-  const QueuedImage& image = images_[0].front();
-  const bool imu_is_there =
-      !imu_expected_ || (!samples_.empty() && samples_.back().stamp >= image.stamp);
-  if (imu_is_there && partnerIsDecided(image)) return true;
-  return std::chrono::steady_clock::now() - image.arrival > kPatience;
+bool InputQueue::imuIsThere(const QueuedImage& image) const {
+  return !imu_expected_ || imu_is_silent_ || gyroscope_.reaches(image.stamp);
+}
+
+/// Waits until the oldest image has what it needs, or for as long as it is worth.
+void InputQueue::waitForFront(std::unique_lock<std::mutex>* lock) {
+  const Clock::time_point arrival = images_[0].front().arrival;
+  const auto wait = [&](std::chrono::milliseconds patience, auto is_there) {
+    return changed_.wait_until(*lock, arrival + patience, [&] {
+      return is_closed_ || images_[0].empty() || is_there(images_[0].front());
+    });
+  };
+  imu_is_silent_ =
+      !wait(kImuPatience, [this](const QueuedImage& image) { return imuIsThere(image); }) ||
+      imu_is_silent_;
+  wait(kPartnerPatience, [this](const QueuedImage& image) { return partnerIsDecided(image); });
 }
 
 TrackerInput InputQueue::takeFront() {
@@ -62,16 +68,14 @@ TrackerInput InputQueue::takeFront() {
     input.second = std::move(others.front());
     others.pop_front();
   }
-  while (!samples_.empty() && samples_.front().stamp <= stamp) {
-    input.imu.push_back(samples_.front());
-    samples_.pop_front();
-  }
+  input.imu = gyroscope_.takeUntil(stamp);
   return input;
 }
 
 std::optional<TrackerInput> InputQueue::take() {
   std::unique_lock<std::mutex> lock(mutex_);
-  while (!is_closed_ && !isReady()) changed_.wait_for(lock, kPoll);
+  changed_.wait(lock, [this] { return is_closed_ || !images_[0].empty(); });
+  if (!is_closed_) waitForFront(&lock);
   if (is_closed_) return std::nullopt;
   return takeFront();
 }

@@ -11,6 +11,7 @@
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 
+#include "feature_tracker/gyroscope_buffer.h"
 #include "vins_core/imu.h"
 #include "vins_core/time.h"
 
@@ -32,10 +33,13 @@ struct TrackerInput {
 };
 
 /// Between the callbacks, which only put messages here, and the worker that takes them: bounded.
-/// An image waits a little for its partner of the other camera and for the IMU samples up to it.
+/// An image waits a little for its partner of the other camera, and for the IMU samples up to it as
+/// long as an IMU seems to be there: what the tracker gets does not depend on when messages come.
 class InputQueue {
  public:
-  InputQueue(bool stereo, bool imu) : stereo_(stereo), imu_expected_(imu) {}
+  /// `td`: time offset of the camera, t_imu = t_cam + td [s].
+  InputQueue(bool stereo, bool imu, double td)
+      : stereo_(stereo), imu_expected_(imu), gyroscope_(td) {}
 
   void addImage(int camera, QueuedImage image);
   void addImu(const ImuSample& sample);
@@ -48,15 +52,19 @@ class InputQueue {
   int dropped() const;
 
  private:
-  bool isReady() const;
+  using Clock = std::chrono::steady_clock;
+
+  bool imuIsThere(const QueuedImage& image) const;
   bool partnerIsDecided(const QueuedImage& image) const;
+  void waitForFront(std::unique_lock<std::mutex>* lock);
   TrackerInput takeFront();
 
   bool stereo_, imu_expected_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<QueuedImage> images_[2];
-  std::deque<ImuSample> samples_;
+  GyroscopeBuffer gyroscope_;
+  bool imu_is_silent_ = false;  ///< an image has waited for it in vain
   int dropped_ = 0;
   bool is_closed_ = false;
 };

@@ -47,6 +47,7 @@ RigConfiguration readRigConfiguration(const Parameters& parameters) {
   rig.cameras.push_back(parameters.has("cam0_calib") ? cameraOf(parameters, "cam0_calib")
                                                      : std::shared_ptr<const camera_model::Camera>(
                                                            camera_model::readCamera(parameters)));
+  rig.td = parameters.numberOr("td", 0.0, {-10.0, 10.0});
   readFirstPose(parameters, &rig);
   if (!rig.second_image_topic.empty()) {
     rig.cameras.push_back(cameraOf(parameters, "cam1_calib"));

@@ -17,6 +17,7 @@ struct RigConfiguration {
   std::string imu_topic;           ///< imu_topic; empty: none
   std::vector<std::shared_ptr<const camera_model::Camera>> cameras;  ///< one or two
   std::vector<Pose> T_bc;       ///< of each; identity where not known
+  double td = 0.0;              ///< t_imu = t_cam + td [s]
   bool rotation_known = false;  ///< the gyroscope's turns can be carried over to the camera
 };
 

@@ -96,6 +96,8 @@ class FeatureTracker::Impl {
 
  private:
   bool admit(const std::vector<cv::Mat>& images, Stamp stamp, FeatureTrackerResult* result);
+  bool refuseLate(Stamp stamp, FeatureTrackerResult* result);
+  void restart(StampVerdict verdict, Stamp stamp, FeatureTrackerResult* result);
   void takeImage(const cv::Mat& image, TrackerStatistics* statistics);
   void followTracks(Stamp stamp, TrackerStatistics* statistics);
   void matchBrightness();
@@ -125,6 +127,7 @@ class FeatureTracker::Impl {
   std::function<void(TrackerStage)> observer_;
 
   std::uint32_t sequence_ = 0;
+  int late_images_ = 0;
   bool is_lost_ = false;
   ImagePyramid previous_, current_, second_;
   // Kept from image to image, so that little is allocated for an image.
@@ -156,18 +159,42 @@ bool FeatureTracker::Impl::admit(const std::vector<cv::Mat>& images, Stamp stamp
   const StampVerdict verdict = clock_.judge(stamp);
   if (verdict == StampVerdict::kNegative) return refuse("its stamp is negative");
   if (verdict == StampVerdict::kDuplicate) return refuse("its stamp is that of the image before");
+  if (verdict == StampVerdict::kLate) return refuseLate(stamp, result);
   if (verdict == StampVerdict::kBackwards || verdict == StampVerdict::kGap) {
-    const double jump = toSeconds(stamp - *clock_.last());
-    reset();
-    result->restarted = true;
+    restart(verdict, stamp, result);
+  }
+  return true;
+}
+
+bool FeatureTracker::Impl::refuseLate(Stamp stamp, FeatureTrackerResult* result) {
+  const double late = toSeconds(*clock_.last() - stamp);
+  result->events.push_back({stamp,
+                            Severity::kWarning,
+                            "image_late",
+                            "an image came after a newer one; it is left out",
+                            {{"late_s", late}, {"count", static_cast<double>(++late_images_)}}});
+  return false;
+}
+
+/// New tracks; after a jump back in time whoever takes the frames should start again, too.
+void FeatureTracker::Impl::restart(StampVerdict verdict, Stamp stamp,
+                                   FeatureTrackerResult* result) {
+  const double jump = toSeconds(stamp - *clock_.last());
+  result->restarted = verdict == StampVerdict::kBackwards;
+  if (result->restarted) {
     result->events.push_back({stamp,
                               Severity::kWarning,
                               "tracker_restarted",
-                              jump < 0.0 ? "the images' time went back; starting again"
-                                         : "no image for too long; starting again",
+                              "the images' time went back; starting again",
                               {{"jump_s", jump}}});
+  } else {
+    result->events.push_back({stamp,
+                              Severity::kWarning,
+                              "image_gap",
+                              "no image for so long that all tracks are lost; new ones begin",
+                              {{"gap_s", jump}}});
   }
-  return true;
+  reset();
 }
 
 FeatureTrackerResult FeatureTracker::Impl::track(const std::vector<cv::Mat>& images, Stamp stamp,

@@ -1,13 +1,21 @@
 #include "feature_tracker/frame_clock.h"
 
 namespace vins::feature_tracker {
+namespace {
+
+constexpr double kJump = 1.0;  // backwards by more is a recording that begins again [s]
+
+}  // namespace
 
 StampVerdict FrameClock::judge(Stamp stamp) const {
   // Negative stamps are refused before anything is subtracted: no difference can overflow.
   if (stamp < 0) return StampVerdict::kNegative;
   if (!last_) return StampVerdict::kFirst;
   if (stamp == *last_) return StampVerdict::kDuplicate;
-  if (stamp < *last_) return StampVerdict::kBackwards;
+  if (stamp < *last_) {
+    const bool is_late = toSeconds(*last_ - stamp) < kJump;
+    return is_late ? StampVerdict::kLate : StampVerdict::kBackwards;
+  }
   return toSeconds(stamp - *last_) > max_gap_ ? StampVerdict::kGap : StampVerdict::kNext;
 }
 

@@ -127,11 +127,12 @@ TEST(FeatureTracker, SurvivesAStepOfTheGain) {
   EXPECT_GT(result.statistics.inliers, result.statistics.before * 85 / 100);
 }
 
-TEST(FeatureTracker, StartsAgainWhenTimeJumps) {
+TEST(FeatureTracker, StartsAgainWhenTimeJumpsBack) {
+  constexpr Stamp kBegin = 10'000'000'000;
   FeatureTracker tracker = makeTracker();
   std::set<std::int64_t> ids;
   for (int i = 0; i < 5; ++i) {
-    const auto result = step(&tracker, i);
+    const auto result = tracker.track({swayingImages()[i]}, kBegin + kPeriod * i, {});
     for (const auto& observation : result.frame->observations) ids.insert(observation.id);
   }
   const auto back = tracker.track({swayingImages()[5]}, kPeriod, {});
@@ -141,8 +142,34 @@ TEST(FeatureTracker, StartsAgainWhenTimeJumps) {
     EXPECT_EQ(observation.track_length, 1);
     EXPECT_EQ(ids.count(observation.id), 0U);
   }
+}
+
+TEST(FeatureTracker, ALateImageCostsThatImageOnly) {
+  FeatureTracker tracker = makeTracker();
+  FeatureTracker undisturbed = makeTracker();
+  for (int i = 0; i < 5; ++i) {
+    step(&tracker, i);
+    step(&undisturbed, i);
+  }
+  const auto late = tracker.track({swayingImages()[1]}, kPeriod * 5 - kPeriod / 2, {});
+  EXPECT_FALSE(late.frame.has_value());
+  EXPECT_FALSE(late.restarted);
+  EXPECT_TRUE(hasEvent(late, "image_late"));
+  const auto next = step(&tracker, 5);
+  const auto expected = step(&undisturbed, 5);
+  ASSERT_TRUE(next.frame.has_value());
+  EXPECT_EQ(next.statistics.inliers, expected.statistics.inliers);
+  EXPECT_EQ(next.frame->observations.size(), expected.frame->observations.size());
+}
+
+TEST(FeatureTracker, APauseOfImagesBeginsNewTracksWithoutARestart) {
+  FeatureTracker tracker = makeTracker();
+  for (int i = 0; i < 5; ++i) step(&tracker, i);
   const auto gap = tracker.track({swayingImages()[6]}, kPeriod + 5'000'000'000, {});
-  EXPECT_TRUE(gap.restarted);
+  EXPECT_FALSE(gap.restarted);
+  EXPECT_TRUE(hasEvent(gap, "image_gap"));
+  ASSERT_TRUE(gap.frame.has_value());
+  for (const auto& observation : gap.frame->observations) EXPECT_EQ(observation.track_length, 1);
 }
 
 /// An image as a camera has it at dusk: dark, and all grey values within a few.

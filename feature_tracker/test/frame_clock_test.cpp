@@ -14,7 +14,9 @@ TEST(FrameClock, JudgesStamps) {
   EXPECT_EQ(clock.judge(5'000'000'000), StampVerdict::kFirst);
   EXPECT_TRUE(clock.advance(5'000'000'000));
   EXPECT_EQ(clock.judge(5'000'000'000), StampVerdict::kDuplicate);
-  EXPECT_EQ(clock.judge(4'999'999'999), StampVerdict::kBackwards);
+  EXPECT_EQ(clock.judge(4'999'999'999), StampVerdict::kLate);
+  EXPECT_EQ(clock.judge(4'000'000'001), StampVerdict::kLate);
+  EXPECT_EQ(clock.judge(4'000'000'000), StampVerdict::kBackwards);
   EXPECT_EQ(clock.judge(5'050'000'000), StampVerdict::kNext);
   EXPECT_EQ(clock.judge(6'050'000'000), StampVerdict::kGap);
   EXPECT_EQ(clock.judge(std::numeric_limits<Stamp>::max()), StampVerdict::kGap);

@@ -66,7 +66,7 @@ Pipeline::Pipeline(const PipelineOptions& options)
       refines_loops_(options.loops.options.refines_in_window),
       recent_images_(kRecentImages),
       pictures_(makePictures(options.loops)),
-      offset_(toNanoseconds(options.estimator.td)) {
+      gyroscope_(options.estimator.td) {
   if (options.map.empty()) return;
   if (!pose_graph_) throw InputError(options.map + ": a map needs loop closing, which is off");
   loaded_map_ = pose_graph_->load(options.map, pictures_ ? &*pictures_ : nullptr);
@@ -79,10 +79,7 @@ std::size_t Pipeline::saveMap(const std::string& path) {
 }
 
 void Pipeline::addImu(const ImuSample& sample) {
-  // A recording that has been started again: samples of its first run would block the way.
-  if (newest_imu_ && sample.stamp < *newest_imu_ - kJump) samples_.clear();
-  samples_.push_back(sample);
-  newest_imu_ = sample.stamp;
+  gyroscope_.add(sample);
   estimator_.addImu(sample);
 }
 
@@ -92,8 +89,7 @@ void Pipeline::addImage(Stamp stamp, const cv::Mat& image) {
 }
 
 bool Pipeline::isReady(const WaitingImage& image) const {
-  if (finished_) return true;
-  return newest_imu_ && *newest_imu_ >= image.stamp + offset_;
+  return finished_ || gyroscope_.reaches(image.stamp);
 }
 
 std::optional<PipelineResult> Pipeline::process() {
@@ -108,20 +104,10 @@ std::optional<PipelineResult> Pipeline::process() {
   return result;
 }
 
-std::vector<ImuSample> Pipeline::samplesUpTo(Stamp stamp) {
-  std::vector<ImuSample> samples;
-  while (!samples_.empty() && samples_.front().stamp - offset_ <= stamp) {
-    samples.push_back(samples_.front());
-    samples.back().stamp -= offset_;
-    samples_.pop_front();
-  }
-  return samples;
-}
-
 void Pipeline::track(const WaitingImage& image, PipelineResult* result) {
   const StopWatch watch;
   feature_tracker::FeatureTrackerResult tracked =
-      tracker_.track({image.image}, image.stamp, samplesUpTo(image.stamp));
+      tracker_.track({image.image}, image.stamp, gyroscope_.takeUntil(image.stamp));
   result->durations.emplace_back("tracker", watch.elapsed());
   result->tracker = tracked.statistics;
   append(&result->events, tracked.events);

@@ -29,15 +29,15 @@ struct TrackerStatistics {
   bool equalized = false;          ///< CLAHE was applied
 };
 
-/// What comes of one image. Events by their codes: image_refused, tracker_restarted, tracking_lost,
-/// tracking_resumed.
+/// What comes of one image. Events by their codes: image_refused, image_late, image_gap,
+/// tracker_restarted, tracking_lost, tracking_resumed.
 struct FeatureTrackerResult {
   /// Absent where the image was refused, or `frequency` skips it. May have few observations or
   /// none, when there is nothing to see.
   std::optional<FeatureFrame> frame;
   std::vector<Event> events;
   TrackerStatistics statistics;
-  bool restarted = false;  ///< time jumped: all tracks were dropped, and consumers should restart
+  bool restarted = false;  ///< time jumped back: consumers should restart
 };
 
 /// The steps of track(), in their order.

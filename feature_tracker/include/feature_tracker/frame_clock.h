@@ -11,9 +11,10 @@ enum class StampVerdict {
   kFirst,      ///< nothing came before
   kNext,       ///< follows the image before
   kDuplicate,  ///< of the image before: refuse it
+  kLate,       ///< earlier than the image before by less than a second: refuse it
   kNegative,   ///< no time at all: refuse it
-  kBackwards,  ///< earlier than the image before: start again
-  kGap         ///< after a pause that no track survives: start again
+  kBackwards,  ///< earlier by more, as when a recording begins again: start again
+  kGap         ///< after a pause that no track survives: new tracks
 };
 
 /// Watches the stamps of images, and knows which of them are due at a lower rate.

@@ -11,6 +11,7 @@
 
 #include "camera_model/camera.h"
 #include "feature_tracker/feature_tracker.h"
+#include "feature_tracker/gyroscope_buffer.h"
 #include "feature_tracker/tracker_options.h"
 #include "pose_graph/place/recent_images.h"
 #include "pose_graph/pose_graph.h"
@@ -96,7 +97,6 @@ class Pipeline {
   };
 
   bool isReady(const WaitingImage& image) const;
-  std::vector<ImuSample> samplesUpTo(Stamp stamp);
   void track(const WaitingImage& image, PipelineResult* result);
   void estimate(PipelineResult* result);
   void closeLoops(const estimator::EstimatorResult& estimate, PipelineResult* result);
@@ -109,10 +109,8 @@ class Pipeline {
   pose_graph::RecentImages recent_images_;
   std::optional<pose_graph::PictureStore> pictures_;  ///< where save_image wants them
   std::optional<pose_graph::LoadedMap> loaded_map_;
-  Stamp offset_;                   ///< td [ns]
-  std::deque<ImuSample> samples_;  ///< not yet handed to the tracker
+  feature_tracker::GyroscopeBuffer gyroscope_;  ///< not yet handed to the tracker
   std::deque<WaitingImage> images_;
-  std::optional<Stamp> newest_imu_;
   bool finished_ = false;
 };
 
