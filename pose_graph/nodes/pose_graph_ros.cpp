@@ -14,8 +14,8 @@
 namespace vins::pose_graph {
 namespace {
 
-constexpr std::size_t kMaxWaiting = 400;   // several seconds of keyframes and odometries
-constexpr std::size_t kRecentImages = 60;  // three seconds at 20 Hz: the estimator may be behind
+constexpr std::size_t kMaxWaiting = 400;  // several seconds of keyframes and odometries
+constexpr double kRecentImages = 3.0;     // the estimator may be behind [s]
 constexpr std::size_t kRecentEvents = 5;
 
 PoseGraphFrames framesOf(const ros::NodeHandle& private_node) {

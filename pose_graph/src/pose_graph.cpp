@@ -7,6 +7,7 @@
 
 #include "pose_graph/graph/loop_thinning.h"
 #include "pose_graph/loop/match_drawing.h"
+#include "pose_graph/place/recent_images.h"
 #include "vins_core/heading.h"
 #include "vins_core/wall_clock.h"
 
@@ -75,7 +76,7 @@ PoseGraph::PoseGraph(const PoseGraphOptions& options,
 PoseGraphResult PoseGraph::addKeyframe(const Keyframe& keyframe, const cv::Mat& image) {
   PoseGraphResult result;
   if (!addToGraph(keyframe, &result)) return result;
-  if (!image.empty()) {
+  if (!image.empty() && toSeconds(keyframe.chosen_at - keyframe.stamp) <= kLongestChoice) {
     const LoopFinder::Gate gate = gateFor(keyframe.stamp, &result.events);
     take(keyframe, finder_.addKeyframe(keyframe, image, gate), &result);
   }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pose_graph/place/recent_images.h"
 #include "pose_graph_fixture.h"
 #include "synthetic_keyframes.h"
 #include "vins_core/input_error.h"
@@ -48,6 +49,17 @@ TEST_F(PoseGraphTest, ARevisitBecomesAMatchInTheQuerysWorldAndAnEvent) {
   EXPECT_EQ(statistics.loops, found.size());
   EXPECT_EQ(statistics.optimizations, found.size());
   EXPECT_GT(statistics.memory, 15 * 20'000u) << "views are remembered";
+}
+
+TEST_F(PoseGraphTest, AKeyframeChosenLongAfterItsImageHasNoPlace) {
+  const auto graph = this->graph();
+  for (int place = 0; place < 12; ++place) visit(graph.get(), place);
+  Keyframe late = revisits_.keyframe(12, 2, kDrift);
+  late.chosen_at = late.stamp + toNanoseconds(kLongestChoice) + 1;
+  EXPECT_FALSE(graph->addKeyframe(late, revisits_.image(2)).match);
+  Keyframe prompt = revisits_.keyframe(13, 3, kDrift);
+  prompt.chosen_at = prompt.stamp + toNanoseconds(kLongestChoice) - 1;
+  EXPECT_TRUE(graph->addKeyframe(prompt, revisits_.image(3)).match);
 }
 
 TEST_F(PoseGraphTest, TheMatchHasTheOldRollAndPitch) {

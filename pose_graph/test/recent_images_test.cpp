@@ -10,7 +10,7 @@ constexpr Stamp kMs = 1'000'000;
 cv::Mat imageOf(int value) { return cv::Mat1b(1, 1, static_cast<uchar>(value)); }
 
 TEST(RecentImages, FindsTheNearestAndForgetsTheOldest) {
-  RecentImages images(3);
+  RecentImages images(0.1);
   for (int i = 0; i < 5; ++i) images.add(i * 50 * kMs, imageOf(i));
   EXPECT_EQ(images.size(), 3u);
   EXPECT_TRUE(images.find(50 * kMs).empty()) << "forgotten";
@@ -20,7 +20,7 @@ TEST(RecentImages, FindsTheNearestAndForgetsTheOldest) {
 }
 
 TEST(RecentImages, TakesTheNearerOfTwoThatAreClose) {
-  RecentImages images(3);
+  RecentImages images(0.1);
   images.add(0, imageOf(0));
   images.add(6 * kMs, imageOf(1));
   EXPECT_EQ(images.find(2 * kMs).at<uchar>(0), 0);
@@ -28,8 +28,11 @@ TEST(RecentImages, TakesTheNearerOfTwoThatAreClose) {
 }
 
 TEST(RecentImages, ARestartedRecordingBeginsAnew) {
-  RecentImages images(3);
+  RecentImages images(0.1);
   images.add(1000 * kMs, imageOf(0));
+  images.add(600 * kMs, imageOf(2));
+  EXPECT_TRUE(images.find(600 * kMs).empty()) << "late: left out";
+  EXPECT_FALSE(images.find(1000 * kMs).empty());
   images.add(0, imageOf(1));
   EXPECT_EQ(images.size(), 1u);
   EXPECT_TRUE(images.find(1000 * kMs).empty());

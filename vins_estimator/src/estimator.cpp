@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,10 @@ TurnCalibratorOptions calibratorOptions(const EstimatorOptions& options) {
   return result;
 }
 
+/// From a keyframe's image to the use of its loop: three images at 20 Hz, in which a place is
+/// recognised on any machine that keeps up [s].
+constexpr double kLoopDelay = 0.15;
+
 void moveEvents(std::vector<Event> events, EstimatorResult* result) {
   for (Event& event : events) result->events.push_back(std::move(event));
 }
@@ -80,7 +85,7 @@ class Estimator::Implementation {
   void addFrame(const FeatureFrame& frame) { queue_.addFrame(frame); }
   void setBacklog(int frames) { backlog_ = frames; }
   void addLoopMatch(const LoopMatch& match) {
-    if (status_ == EstimatorStatus::kTracking) tracker_.addLoop(match);
+    if (status_ == EstimatorStatus::kTracking) waiting_loops_.push_back(match);
   }
 
   std::optional<EstimatorResult> process() {
@@ -94,6 +99,7 @@ class Estimator::Implementation {
     if (status_ == EstimatorStatus::kTracking) checkInterval(*measurements, &result);
     if (options_.rolling_shutter_readout > 0.0) undoRollingShutter(&*measurements);
     stillness_.addFrame(measurements->frame, measurements->imu);
+    useLoops(result.stamp);
     if (status_ == EstimatorStatus::kInitializing) {
       initialize(*measurements, &result);
     } else {
@@ -125,6 +131,19 @@ class Estimator::Implementation {
     stillness_.clear();
     track_watch_.clear();
     tracker_.clear();
+    waiting_loops_.clear();
+  }
+
+  /// Hands the loops on that are due. A loop waits for a fixed time after its query keyframe, so
+  /// that it does not matter how long recognising the place has taken.
+  void useLoops(Stamp now) {
+    const auto is_due = [&](const LoopMatch& match) {
+      return now >= match.query_stamp + toNanoseconds(kLoopDelay);
+    };
+    while (!waiting_loops_.empty() && is_due(waiting_loops_.front())) {
+      if (status_ == EstimatorStatus::kTracking) tracker_.addLoop(waiting_loops_.front());
+      waiting_loops_.pop_front();
+    }
   }
 
   void fail(const std::string& why, std::vector<std::pair<std::string, double>> figures,
@@ -271,6 +290,7 @@ class Estimator::Implementation {
   EstimatorStatus status_ = EstimatorStatus::kInitializing;
   std::uint32_t sequence_ = 0;
   int backlog_ = 0;
+  std::deque<LoopMatch> waiting_loops_;  ///< of keyframes that have just become such
   bool extrinsic_is_known_ = true;
 };
 

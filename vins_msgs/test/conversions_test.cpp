@@ -81,10 +81,11 @@ void expectSame(const vins::FeatureFrame& a, const vins::FeatureFrame& b) {
 }
 
 void expectSame(const vins::Keyframe& a, const vins::Keyframe& b) {
-  const auto& [id, sequence, stamp, T_wb, T_bc, covariance, points] = a;
+  const auto& [id, sequence, stamp, chosen_at, T_wb, T_bc, covariance, points] = a;
   EXPECT_EQ(id, b.id);
   EXPECT_EQ(sequence, b.sequence);
   EXPECT_EQ(stamp, b.stamp);
+  EXPECT_EQ(chosen_at, b.chosen_at);
   expectSame(T_wb, b.T_wb);
   expectSame(T_bc, b.T_bc);
   EXPECT_EQ(covariance, b.covariance);

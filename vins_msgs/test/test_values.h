@@ -53,13 +53,8 @@ class Random {
   }
   vins::KeyframePoint keyframePoint() { return {id(), pixel(), bearing(), vector()}; }
   vins::Keyframe keyframe() {
-    return {id(),
-            sequence(),
-            stamp(),
-            pose(),
-            pose(),
-            matrix<6>(),
-            {keyframePoint(), keyframePoint(), keyframePoint()}};
+    return {id(),   sequence(), stamp(),     stamp(),
+            pose(), pose(),     matrix<6>(), {keyframePoint(), keyframePoint(), keyframePoint()}};
   }
   vins::KeyframePoseUpdate poseUpdate() { return {id(), sequence(), stamp(), pose()}; }
   vins::MatchedFeature matchedFeature() { return {id(), bearing()}; }

@@ -10,8 +10,8 @@ namespace vins::pipeline {
 namespace {
 
 constexpr Stamp kJump = 1'000'000'000;  ///< stamps that fall by more begin a new run [ns]
-/// Images kept for keyframes to come: more than a window, from which the first keyframes are.
-constexpr std::size_t kRecentImages = 30;
+/// Images kept for keyframes to come: more than the time in which one is chosen [s].
+constexpr double kRecentImages = pose_graph::kLongestChoice + 0.2;
 
 void append(std::vector<Event>* all, const std::vector<Event>& events) {
   all->insert(all->end(), events.begin(), events.end());

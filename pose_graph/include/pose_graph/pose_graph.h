@@ -83,7 +83,8 @@ class PoseGraph {
   PoseGraph(const PoseGraphOptions& options, std::shared_ptr<const camera_model::Camera> camera,
             const PlaceModel& places);
 
-  /// A keyframe and its image, CV_8UC1, or none: then the place is not remembered. Ids must rise.
+  /// A keyframe and its image, CV_8UC1, or none: then the place is not remembered, nor is that of
+  /// a keyframe that was chosen long after its image (see kLongestChoice). Ids must rise.
   /// Throws InputError where the id is known, the stamp does not rise within the sequence, or the
   /// image is not the camera's.
   PoseGraphResult addKeyframe(const Keyframe& keyframe, const cv::Mat& image);

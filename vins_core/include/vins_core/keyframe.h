@@ -23,6 +23,7 @@ struct Keyframe {
   std::int64_t id = 0;         ///< counts keyframes in a run, resets do not restart it
   std::uint32_t sequence = 0;  ///< rises when the estimator resets or the recording restarts
   Stamp stamp = 0;             ///< [ns]
+  Stamp chosen_at = 0;         ///< of the frame with which it became a keyframe [ns]
   Pose T_wb;                   ///< body in the odometry's world frame
   Pose T_bc;                   ///< camera in the body frame, as estimated then
   Eigen::Matrix<double, 6, 6> covariance =

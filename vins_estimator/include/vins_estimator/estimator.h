@@ -82,7 +82,7 @@ class Estimator {
   /// dropped, counted and told by an event of the next result.
   void addImu(const ImuSample& sample);
   void addFrame(const FeatureFrame& frame);
-  /// A verified loop, for the window's next adjustments.
+  /// A verified loop, for the window's adjustments from 0.15 s after its query keyframe on.
   void addLoopMatch(const LoopMatch& match);
 
   /// Tells that frames wait outside: with motion_only_ba 2 the window's adjustment is put off while

@@ -17,6 +17,7 @@ Keyframe keyframeOf(const SlidingWindow& window, std::size_t index, std::uint32_
   keyframe.id = frame.keyframe_id;
   keyframe.sequence = sequence;
   keyframe.stamp = frame.stamp;
+  keyframe.chosen_at = window.frames.back().stamp;
   keyframe.T_wb = frame.state.value().T_wb;
   keyframe.T_bc = window.rig.T_bc;
   keyframe.covariance = frame.covariance.topLeftCorner<6, 6>();

@@ -211,6 +211,7 @@ inline Keyframe toMsg(const vins::Keyframe& keyframe) {
   message.sequence = keyframe.sequence;
   message.T_wb = toMsg(keyframe.T_wb);
   message.T_bc = toMsg(keyframe.T_bc);
+  message.chosen_at = toRosTime(keyframe.chosen_at);
   copyTo(keyframe.covariance, message.covariance);
   message.points.reserve(keyframe.points.size());
   for (const auto& point : keyframe.points) message.points.push_back(toMsg(point));
@@ -225,6 +226,7 @@ inline vins::Keyframe fromMsg(const Keyframe& message) {
   keyframe.sequence = message.sequence;
   keyframe.T_wb = reader.inside("T_wb").pose(message.T_wb);
   keyframe.T_bc = reader.inside("T_bc").pose(message.T_bc);
+  keyframe.chosen_at = toStamp(message.chosen_at);
   keyframe.covariance = reader.covariance<6>("covariance", message.covariance);
   keyframe.points.reserve(message.points.size());
   for (std::size_t i = 0; i < message.points.size(); ++i) {
