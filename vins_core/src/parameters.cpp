@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -22,6 +23,7 @@ struct Parameters::Section {
   YAML::Node node;
   std::shared_ptr<std::vector<std::string>> remarks;  ///< of all sections of the file
   std::set<std::string> asked = {};
+  std::map<std::string, std::shared_ptr<Section>> sections = {};  ///< that were asked for
 
   bool has(const std::string& key) const {
     const YAML::Node value = find(key);
@@ -246,8 +248,15 @@ Parameters Parameters::section(const std::string& key) const {
   if (!node.IsDefined() || !node.IsMap()) {
     fail(key, vins::describe(node), "a section of lines 'key: value'");
   }
-  return {name_ + ": " + key,
-          std::make_shared<Section>(Section{section_->file, node, section_->remarks})};
+  std::shared_ptr<Section>& section = section_->sections[key];
+  if (!section)
+    section = std::make_shared<Section>(Section{section_->file, node, section_->remarks});
+  return {name_ + ": " + key, section};
+}
+
+bool Parameters::isSection(const std::string& key) const {
+  const YAML::Node node = section_->find(key);
+  return node.IsDefined() && node.IsMap();
 }
 
 void Parameters::know(const std::vector<std::string>& keys) const {

@@ -67,8 +67,12 @@ class Parameters {
   /// A matrix of this size: an !!opencv-matrix, or a sequence of rows.
   Eigen::MatrixXd matrix(const std::string& key, int rows, int cols) const;
 
-  /// The map at `key`, as parameters of their own.
+  /// The map at `key`, as parameters of their own. Asked for again it is the same section, with its
+  /// memory of what was asked for.
   Parameters section(const std::string& key) const;
+
+  /// The value of the key is a map.
+  bool isSection(const std::string& key) const;
 
   /// Remembers keys that others read from the same map, as if a getter had asked for them.
   void know(const std::vector<std::string>& keys) const;
