@@ -175,7 +175,7 @@ FeatureTrackerResult FeatureTracker::Impl::track(const std::vector<cv::Mat>& ima
   FeatureTrackerResult result;
   const std::uint32_t sequence = sequence_++;
   const bool admitted = admit(images, stamp, &result);
-  turn_.addSamples(imu);
+  if (options_.uses_gyroscope) turn_.addSamples(imu);
   if (!admitted) return result;
   takeImage(images.front(), &result.statistics);
   finishStage(TrackerStage::kPyramid);
