@@ -114,11 +114,27 @@ class CalibrationProblem {
     if (!held.empty()) {
       problem_.SetManifold(parameters_.data(), new ceres::SubsetManifold(count, held));
     }
-    if (state.camera->model() == CameraModel::kMei) {
-      problem_.SetParameterLowerBound(parameters_.data(), 0, 0.0);  // xi
-    }
+    boundParameters(state.camera->model());
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (state.poses[i]) addView(points, views[i], mask[i], options, *state.poses[i], i);
+    }
+  }
+
+  /// Within these a model is defined.
+  void boundParameters(CameraModel model) {
+    const auto bound = [&](int index, double least, double most) {
+      problem_.SetParameterLowerBound(parameters_.data(), index, least);
+      problem_.SetParameterUpperBound(parameters_.data(), index, most);
+    };
+    constexpr double kMost = 1e6;
+    if (model == CameraModel::kMei) bound(0, 0.0, kMost);  // xi
+    if (model == CameraModel::kDoubleSphere) {
+      bound(0, -1.0, 1.0);  // xi
+      bound(1, 0.0, 1.0);   // alpha
+    }
+    if (model == CameraModel::kEucm) {
+      bound(0, 0.0, 1.0);     // alpha
+      bound(1, 1e-3, kMost);  // beta
     }
   }
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "camera_model/double_sphere.h"
+#include "camera_model/eucm.h"
 #include "camera_model/kannala_brandt.h"
 #include "camera_model/mei.h"
 #include "camera_model/pinhole_radtan.h"
@@ -40,6 +42,15 @@ std::unique_ptr<Camera> startingCamera(const CalibrationOptions& options, double
       p.setZero(10);
       p << -f, 0.0, 1.0 / (3.0 * f), 0.0, 1.0 / (45.0 * f * f * f), 1.0, 0.0, 0.0, u, v;
       return std::make_unique<Scaramuzza>(options.camera_name, size, p);
+    case CameraModel::kDoubleSphere:
+      // Both as Mei's with xi = 1.
+      p.setZero(6);
+      p << 0.0, 0.5, f, f, u, v;
+      return std::make_unique<DoubleSphere>(options.camera_name, size, p);
+    case CameraModel::kEucm:
+      p.setZero(6);
+      p << 0.5, 1.0, f, f, u, v;
+      return std::make_unique<Eucm>(options.camera_name, size, p);
   }
   return nullptr;
 }

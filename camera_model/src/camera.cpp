@@ -19,6 +19,10 @@ const char* toString(CameraModel model) {
       return "MEI";
     case CameraModel::kScaramuzza:
       return "SCARAMUZZA";
+    case CameraModel::kDoubleSphere:
+      return "DOUBLE_SPHERE";
+    case CameraModel::kEucm:
+      return "EUCM";
   }
   return "unknown";
 }
@@ -28,12 +32,12 @@ CameraModel cameraModelFromString(const std::string& name) {
   std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) {
     return c == '-' ? '_' : static_cast<char>(std::toupper(c));
   });
-  for (const CameraModel model : {CameraModel::kPinhole, CameraModel::kKannalaBrandt,
-                                  CameraModel::kMei, CameraModel::kScaramuzza}) {
+  for (const CameraModel model : kCameraModels) {
     if (upper == toString(model)) return model;
   }
   throw InputError("camera model: found '" + name +
-                   "'; allowed: pinhole, kannala-brandt, mei, scaramuzza");
+                   "'; allowed: pinhole, kannala-brandt, mei, scaramuzza, "
+                   "double-sphere, eucm");
 }
 
 Camera::Camera(std::string name, ImageSize size) : name_(std::move(name)), size_(size) {

@@ -1,15 +1,17 @@
 #include "camera_model/camera_file.h"
 
-#include <cstdio>
 #include <sstream>
 #include <utility>
 #include <vector>
 
+#include "camera_model/double_sphere.h"
+#include "camera_model/eucm.h"
 #include "camera_model/kannala_brandt.h"
 #include "camera_model/mei.h"
 #include "camera_model/pinhole_radtan.h"
 #include "camera_model/scaramuzza.h"
 #include "vins_core/input_error.h"
+#include "vins_core/yaml_text.h"
 
 namespace vins::camera_model {
 namespace {
@@ -39,13 +41,29 @@ std::unique_ptr<Camera> makeCamera(CameraModel model, const std::string& name, I
       return std::make_unique<Mei>(name, size, p);
     case CameraModel::kScaramuzza:
       return std::make_unique<Scaramuzza>(name, size, p);
+    case CameraModel::kDoubleSphere:
+      return std::make_unique<DoubleSphere>(name, size, p);
+    case CameraModel::kEucm:
+      return std::make_unique<Eucm>(name, size, p);
   }
   return nullptr;
+}
+
+/// Where there is no distortion, OpenCV's reader gives zeros.
+bool hasDistortion(const Parameters& file) {
+  if (file.has("distortion_parameters")) return true;
+  file.remark("distortion_parameters",
+              "no distortion_parameters: the lens is taken as free of distortion");
+  return false;
 }
 
 std::vector<double> readPinhole(const Parameters& file) {
   std::vector<double> values;
   append(file.section("projection_parameters"), {"fx", "fy", "cx", "cy"}, &values);
+  if (!hasDistortion(file)) {
+    values.resize(values.size() + 5, 0.0);
+    return values;
+  }
   const Parameters distortion = file.section("distortion_parameters");
   append(distortion, {"k1", "k2", "p1", "p2"}, &values);
   values.push_back(distortion.numberOr("k3", 0.0));
@@ -55,7 +73,11 @@ std::vector<double> readPinhole(const Parameters& file) {
 std::vector<double> readMei(const Parameters& file) {
   std::vector<double> values;
   append(file.section("mirror_parameters"), {"xi"}, &values);
-  append(file.section("distortion_parameters"), {"k1", "k2", "p1", "p2"}, &values);
+  if (hasDistortion(file)) {
+    append(file.section("distortion_parameters"), {"k1", "k2", "p1", "p2"}, &values);
+  } else {
+    values.resize(values.size() + 4, 0.0);
+  }
   append(file.section("projection_parameters"), {"gamma1", "gamma2", "u0", "v0"}, &values);
   return values;
 }
@@ -66,6 +88,14 @@ std::vector<double> readScaramuzza(const Parameters& file) {
   append(file.section("affine_parameters"), {"ac", "ad", "ae", "cx", "cy"}, &values);
   // The inverse polynomial follows from the other; asking for it keeps it from being "unknown".
   if (file.has("inv_poly_parameters")) file.section("inv_poly_parameters");
+  return values;
+}
+
+/// Of the double sphere and the extended unified model, with the names of their own parameters.
+std::vector<double> readUnified(const Parameters& file, const Names& own) {
+  std::vector<double> values;
+  append(file.section("mirror_parameters"), own, &values);
+  append(file.section("projection_parameters"), {"fx", "fy", "cx", "cy"}, &values);
   return values;
 }
 
@@ -82,6 +112,10 @@ std::vector<double> readValues(CameraModel model, const Parameters& file) {
       return readMei(file);
     case CameraModel::kScaramuzza:
       return readScaramuzza(file);
+    case CameraModel::kDoubleSphere:
+      return readUnified(file, {"xi", "alpha"});
+    case CameraModel::kEucm:
+      return readUnified(file, {"alpha", "beta"});
   }
   return values;
 }
@@ -99,8 +133,9 @@ std::unique_ptr<Camera> namingFile(const Parameters& file, Make make) {
 }
 
 std::unique_ptr<Camera> readCamodocal(const Parameters& file) {
-  const CameraModel model = cameraModelFromString(
-      file.text("model_type", {"PINHOLE", "KANNALA_BRANDT", "MEI", "SCARAMUZZA"}));
+  Names models;
+  for (const CameraModel model : kCameraModels) models.push_back(toString(model));
+  const CameraModel model = cameraModelFromString(file.text("model_type", models));
   const std::string name = file.textOr("camera_name", "camera");
   const ImageSize size{file.integer("image_width", {1, 100000}),
                        file.integer("image_height", {1, 100000})};
@@ -108,49 +143,70 @@ std::unique_ptr<Camera> readCamodocal(const Parameters& file) {
   return namingFile(file, [&] { return makeCamera(model, name, size, parameters); });
 }
 
-std::unique_ptr<Camera> readKalibr(const Parameters& file, const std::string& name) {
-  const Parameters section = file.section(name);
-  const std::string projection = section.text("camera_model", {"pinhole", "omni"});
-  const bool is_omni = projection == "omni";
-  const std::string distortion =
-      section.text("distortion_model",
-                   is_omni ? Names{"radtan", "none"} : Names{"radtan", "equidistant", "none"});
-  const std::vector<double> f = section.numbers("intrinsics", {is_omni ? 5u : 4u});
-  const std::vector<double> k = distortion == "none" ? std::vector<double>(4, 0.0)
-                                                     : section.numbers("distortion_coeffs", {4});
-  const std::vector<double> resolution = section.numbers("resolution", {2});
-  const ImageSize size{static_cast<int>(resolution[0]), static_cast<int>(resolution[1])};
-  return namingFile(file, [&]() -> std::unique_ptr<Camera> {
-    if (is_omni) {
-      return makeCamera(CameraModel::kMei, name, size,
-                        toParameters({f[0], k[0], k[1], k[2], k[3], f[1], f[2], f[3], f[4]}));
-    }
-    if (distortion == "equidistant") {
-      return makeCamera(CameraModel::kKannalaBrandt, name, size,
-                        toParameters({k[0], k[1], k[2], k[3], f[0], f[1], f[2], f[3]}));
-    }
-    return makeCamera(CameraModel::kPinhole, name, size,
-                      toParameters({f[0], f[1], f[2], f[3], k[0], k[1], k[2], k[3], 0.0}));
-  });
+/// How Kalibr names a model, and in which order it has our parameters.
+struct KalibrForm {
+  CameraModel model;
+  const char* projection;
+  const char* distortion;
+  std::vector<int> intrinsics;  ///< indices of our parameters
+  std::vector<int> coefficients;
+};
+
+const std::vector<KalibrForm>& kalibrForms() {
+  static const std::vector<KalibrForm> kForms = {
+      {CameraModel::kPinhole, "pinhole", "radtan", {0, 1, 2, 3}, {4, 5, 6, 7}},
+      {CameraModel::kKannalaBrandt, "pinhole", "equidistant", {4, 5, 6, 7}, {0, 1, 2, 3}},
+      {CameraModel::kMei, "omni", "radtan", {0, 5, 6, 7, 8}, {1, 2, 3, 4}},
+      {CameraModel::kDoubleSphere, "ds", "none", {0, 1, 2, 3, 4, 5}, {}},
+      {CameraModel::kEucm, "eucm", "none", {0, 1, 2, 3, 4, 5}, {}}};
+  return kForms;
 }
 
-/// The shortest decimal that reads back as the same double.
-std::string exactText(double value) {
-  char text[32];
-  for (int digits = 6; digits <= 17; ++digits) {
-    std::snprintf(text, sizeof(text), "%.*g", digits, value);
-    if (std::stod(text) == value) break;
+/// The form that a section has; "none" is radtan without distortion where it is no form of its own.
+const KalibrForm& kalibrFormOf(const Parameters& section, bool* has_distortion) {
+  const std::string projection = section.text("camera_model", {"pinhole", "omni", "ds", "eucm"});
+  Names distortions;
+  for (const KalibrForm& form : kalibrForms()) {
+    if (projection == form.projection) distortions.push_back(form.distortion);
   }
-  // A whole number would be read as an integer by OpenCV's storage.
-  const std::string plain = text;
-  return plain.find_first_of(".en") == std::string::npos ? plain + ".0" : plain;
+  if (distortions.front() != "none") distortions.push_back("none");
+  const std::string distortion = section.text("distortion_model", distortions);
+  *has_distortion = distortion != "none";
+  const std::string wanted = *has_distortion ? distortion : distortions.front();
+  for (const KalibrForm& form : kalibrForms()) {
+    if (projection == form.projection && wanted == form.distortion) return form;
+  }
+  return kalibrForms().front();
+}
+
+std::unique_ptr<Camera> readKalibr(const Parameters& file, const std::string& name) {
+  const Parameters section = file.section(name);
+  bool has_distortion = false;
+  const KalibrForm& form = kalibrFormOf(section, &has_distortion);
+  const std::size_t own = form.intrinsics.size() + form.coefficients.size();
+  // One more than Kalibr writes: k3, as OpenCV gives it.
+  CameraParameters p = CameraParameters::Zero(form.model == CameraModel::kPinhole ? 9 : own);
+  const std::vector<double> intrinsics = section.numbers("intrinsics", {form.intrinsics.size()});
+  for (std::size_t i = 0; i < intrinsics.size(); ++i) p[form.intrinsics[i]] = intrinsics[i];
+  if (has_distortion) {
+    const bool may_have_k3 = form.model == CameraModel::kPinhole;
+    const std::vector<double> k = may_have_k3 ? section.numbers("distortion_coeffs", {4, 5})
+                                              : section.numbers("distortion_coeffs", {4});
+    for (std::size_t i = 0; i < 4; ++i) p[form.coefficients[i]] = k[i];
+    if (k.size() == 5) p[8] = k[4];
+  } else {
+    section.know({"distortion_coeffs"});
+  }
+  const std::vector<double> resolution = section.numbers("resolution", {2});
+  const ImageSize size{static_cast<int>(resolution[0]), static_cast<int>(resolution[1])};
+  return namingFile(file, [&] { return makeCamera(form.model, name, size, p); });
 }
 
 std::string sectionText(const std::string& title, const Names& keys,
                         const std::vector<double>& values) {
   std::string text = title + ":\n";
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    text += "   " + keys[i] + ": " + exactText(values[i]) + "\n";
+    text += "   " + keys[i] + ": " + exactNumber(values[i]) + "\n";
   }
   return text;
 }
@@ -187,14 +243,18 @@ std::string parametersText(const Camera& camera) {
       return sectionText("poly_parameters", camera, 0, 5) +
              inversePolynomialText(static_cast<const Scaramuzza&>(camera)) +
              sectionText("affine_parameters", camera, 5, 5);
+    case CameraModel::kDoubleSphere:
+    case CameraModel::kEucm:
+      return sectionText("mirror_parameters", camera, 0, 2) +
+             sectionText("projection_parameters", camera, 2, 4);
   }
   return "";
 }
 
 std::string listText(const CameraParameters& p, const std::vector<int>& order) {
   std::string text;
-  for (const int i : order) text += (text.empty() ? "[" : ", ") + exactText(p[i]);
-  return text + "]";
+  for (const int i : order) text += (text.empty() ? "" : ", ") + exactNumber(p[i]);
+  return "[" + text + "]";
 }
 
 }  // namespace
@@ -228,20 +288,16 @@ std::string toKalibrYaml(const Camera& camera, const std::string& kalibr_camera)
     throw InputError("camera '" + camera.name() + "': Kalibr has no form for " +
                      (has_k3 ? "PINHOLE with k3; calibrate without it" : "SCARAMUZZA"));
   }
-  const bool is_omni = camera.model() == CameraModel::kMei;
-  const bool is_equidistant = camera.model() == CameraModel::kKannalaBrandt;
-  const std::vector<int> intrinsics = is_omni          ? std::vector<int>{0, 5, 6, 7, 8}
-                                      : is_equidistant ? std::vector<int>{4, 5, 6, 7}
-                                                       : std::vector<int>{0, 1, 2, 3};
-  const std::vector<int> distortion = is_omni          ? std::vector<int>{1, 2, 3, 4}
-                                      : is_equidistant ? std::vector<int>{0, 1, 2, 3}
-                                                       : std::vector<int>{4, 5, 6, 7};
+  const KalibrForm* form = nullptr;
+  for (const KalibrForm& candidate : kalibrForms()) {
+    if (candidate.model == camera.model()) form = &candidate;
+  }
   std::ostringstream text;
   text << kalibr_camera << ":\n"
-       << "  camera_model: " << (is_omni ? "omni" : "pinhole") << "\n"
-       << "  intrinsics: " << listText(p, intrinsics) << "\n"
-       << "  distortion_model: " << (is_equidistant ? "equidistant" : "radtan") << "\n"
-       << "  distortion_coeffs: " << listText(p, distortion) << "\n"
+       << "  camera_model: " << form->projection << "\n"
+       << "  intrinsics: " << listText(p, form->intrinsics) << "\n"
+       << "  distortion_model: " << form->distortion << "\n"
+       << "  distortion_coeffs: " << listText(p, form->coefficients) << "\n"
        << "  resolution: [" << camera.imageSize().width << ", " << camera.imageSize().height
        << "]\n";
   return text.str();

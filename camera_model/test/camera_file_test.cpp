@@ -97,6 +97,25 @@ TEST(CameraFile, ReadsKalibrCamchains) {
             parametersOf({0.8, -0.33, 0.13, 0.0005, 0.0006, 833.0, 830.3, 373.8, 253.7}));
 }
 
+TEST(CameraFile, ReadsKalibrsDoubleSphereAndUnifiedCameras) {
+  const auto read_unified = [](const std::string& model, const std::string& intrinsics) {
+    return read("cam0:\n  camera_model: " + model + "\n  intrinsics: " + intrinsics +
+                "\n  distortion_model: none\n  distortion_coeffs: []\n  resolution: [752, 480]\n");
+  };
+  const auto ds = read_unified("ds", "[-0.2, 0.59, 317.5, 316.1, 367, 248]");
+  EXPECT_EQ(ds->model(), CameraModel::kDoubleSphere);
+  EXPECT_EQ(ds->parameters(), parametersOf({-0.2, 0.59, 317.5, 316.1, 367, 248}));
+  EXPECT_EQ(read_unified("eucm", "[0.6, 1.1, 317.5, 316.1, 367, 248]")->model(),
+            CameraModel::kEucm);
+}
+
+TEST(CameraFile, ReadsK3InKalibrsForm) {
+  const std::string text = replaced(kKalibr, "[0.0034, 0.0007, -0.002, 0.0002]",
+                                    "[0.0034, 0.0007, -0.002, 0.0002, 0.03]");
+  EXPECT_EQ(read(replaced(text, "equidistant", "radtan"))->parameters()[8], 0.03);
+  EXPECT_NE(errorOf(text), "") << "equidistant has four";
+}
+
 TEST(CameraFile, CamodocalFormRoundTripsExactly) {
   for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const auto back = read(toCamodocalYaml(*camera));
@@ -170,7 +189,7 @@ TEST(CameraFile, ErrorsNameFileKeyFoundAndAllowed) {
   EXPECT_EQ(
       errorOf(replaced(kVinsMono, "PINHOLE", "PINWHEEL")),
       "rig.yaml:8: key 'model_type': found 'PINWHEEL'; allowed: PINHOLE, KANNALA_BRANDT, MEI, "
-      "SCARAMUZZA");
+      "SCARAMUZZA, DOUBLE_SPHERE, EUCM");
   EXPECT_EQ(errorOf(replaced(kVinsMono, "fx: 4.616e+02", "f_x: 4.616e+02")),
             "rig.yaml: projection_parameters: key 'fx' is missing; allowed: a number; line 18 has "
             "'f_x': is that meant?");
@@ -178,11 +197,13 @@ TEST(CameraFile, ErrorsNameFileKeyFoundAndAllowed) {
             "rig.yaml: camera 'camera': fx: found -461.600000; allowed: a number above 0");
   EXPECT_EQ(errorOf(replaced(kVinsMono, "752", "0")),
             "rig.yaml:10: key 'image_width': found '0'; allowed: a whole number from 1 to 100000");
-  EXPECT_EQ(errorOf(replaced(kKalibr, "pinhole", "ds")),
-            "rig.yaml:3: key 'camera_model': found 'ds'; allowed: pinhole, omni");
+  EXPECT_EQ(errorOf(replaced(kKalibr, "pinhole", "fov")),
+            "rig.yaml:3: key 'camera_model': found 'fov'; allowed: pinhole, omni, ds, eucm");
+  EXPECT_EQ(errorOf(replaced(kKalibr, "equidistant", "fov")),
+            "rig.yaml:5: key 'distortion_model': found 'fov'; allowed: radtan, equidistant, none");
   EXPECT_EQ(errorOf("imu_topic: /imu0\n"),
             "rig.yaml: key 'model_type' is missing; allowed: PINHOLE, KANNALA_BRANDT, MEI, "
-            "SCARAMUZZA");
+            "SCARAMUZZA, DOUBLE_SPHERE, EUCM");
 }
 
 TEST(CameraFile, ReadsFromDisk) {

@@ -38,6 +38,12 @@ std::vector<std::shared_ptr<const Camera>> cameras() {
   all.push_back(std::make_shared<Scaramuzza>(
       "sheared", vga,
       parametersOf({-300, 0.01, 9e-4, -2e-7, 1.5e-9, 0.97, 0.02, -0.015, 300, 250})));
+  all.push_back(std::make_shared<DoubleSphere>("flat double sphere", vga,
+                                               parametersOf({0.3, 0.4, 500, 510, 322, 238})));
+  all.push_back(std::make_shared<DoubleSphere>("round double sphere", vga,
+                                               parametersOf({-0.35, 0.75, 200, 200, 320, 240})));
+  all.push_back(
+      std::make_shared<Eucm>("flat eucm", vga, parametersOf({0.3, 1.4, 400, 400, 320, 240})));
   return all;
 }
 
@@ -262,6 +268,49 @@ TEST(Mei, SeesNothingBelowTheFoldOfTheSphere) {
   EXPECT_FALSE(camera.unproject({320 + 400 / std::sqrt(3.0), 240}));
 }
 
+TEST(DoubleSphere, WithOneSphereIsTheUnifiedCamera) {
+  // xi = 0 leaves Mei's model of xi' = alpha / (1 - alpha), gamma = f / (1 - alpha).
+  const DoubleSphere camera("ds", {640, 480}, parametersOf({0.0, 0.6, 200, 210, 320, 240}));
+  const Mei same("mei", {640, 480}, parametersOf({1.5, 0, 0, 0, 0, 500, 525, 320, 240}));
+  const Eucm eucm("eucm", {640, 480}, parametersOf({0.6, 1.0, 200, 210, 320, 240}));
+  for (const Vector3d& p : {Vector3d(1, 2, 3), Vector3d(-1, 0.5, 0.1), Vector3d(0.7, -0.3, -0.2)}) {
+    EXPECT_LT((*camera.project(p) - *same.project(p)).norm(), 1e-9);
+    EXPECT_LT((*eucm.project(p) - *same.project(p)).norm(), 1e-9);
+  }
+}
+
+TEST(DoubleSphere, WithAlphaZeroAndXiZeroIsAPinhole) {
+  const DoubleSphere camera("ds", {640, 480}, parametersOf({0.0, 0.0, 400, 410, 320, 240}));
+  const auto pixel = camera.project({0.3, -0.2, 2.0});
+  EXPECT_LT((*pixel - Vector2d(320 + 400 * 0.15, 240 - 410 * 0.1)).norm(), 1e-12);
+  EXPECT_FALSE(camera.project({0.3, -0.2, -2.0}));
+}
+
+TEST(DoubleSphere, SeesBehindItselfButNotBeyondTheFold) {
+  const DoubleSphere camera("ds", {512, 512}, parametersOf({-0.17, 0.59, 158, 158, 255, 256}));
+  const auto at = [](double degrees) {
+    const double angle = degrees * M_PI / 180.0;
+    return Vector3d(std::sin(angle), 0.0, std::cos(angle));
+  };
+  EXPECT_TRUE(camera.project(at(100.0)));
+  EXPECT_FALSE(camera.project(at(170.0)));
+  double last = 0.0;
+  for (double degrees = 1.0; degrees < 180.0; degrees += 1.0) {
+    const auto pixel = camera.project(at(degrees));
+    if (!pixel) break;
+    EXPECT_GT(pixel->x(), last) << "folds at " << degrees << " degrees";
+    last = pixel->x();
+  }
+}
+
+TEST(UnifiedCameras, RefuseParametersOutsideOfTheirModels) {
+  const ImageSize vga{640, 480};
+  EXPECT_THROW(DoubleSphere("c", vga, parametersOf({1.5, 0.5, 1, 1, 0, 0})), InputError);
+  EXPECT_THROW(DoubleSphere("c", vga, parametersOf({0.0, 1.1, 1, 1, 0, 0})), InputError);
+  EXPECT_THROW(Eucm("c", vga, parametersOf({-0.1, 1.0, 1, 1, 0, 0})), InputError);
+  EXPECT_THROW(Eucm("c", vga, parametersOf({0.5, 0.0, 1, 1, 0, 0})), InputError);
+}
+
 TEST(Camera, ContainsPixelsOfTheImage) {
   const auto camera = vins::camera_model::testing::exampleCameras()[0];
   EXPECT_TRUE(camera->contains({0.0, 0.0}));
@@ -274,6 +323,7 @@ TEST(Camera, ModelNamesAreReadInAnySpelling) {
   EXPECT_EQ(cameraModelFromString("kannala-brandt"), CameraModel::kKannalaBrandt);
   EXPECT_EQ(cameraModelFromString("KANNALA_BRANDT"), CameraModel::kKannalaBrandt);
   EXPECT_EQ(cameraModelFromString("Pinhole"), CameraModel::kPinhole);
+  EXPECT_EQ(cameraModelFromString("double-sphere"), CameraModel::kDoubleSphere);
   EXPECT_THROW(cameraModelFromString("fisheye"), InputError);
 }
 

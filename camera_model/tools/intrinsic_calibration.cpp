@@ -52,7 +52,7 @@ po::options_description describeOptions() {
   add("file-extension,e", po::value<std::string>()->default_value(".png"),
       "take images whose names end so");
   add("camera-model", po::value<std::string>()->default_value("mei"),
-      "pinhole, kannala-brandt, mei or scaramuzza");
+      "pinhole, kannala-brandt, mei, scaramuzza, double-sphere or eucm");
   add("camera-name", po::value<std::string>()->default_value("camera"),
       "name of the camera, and of the files written");
   add("output,o", po::value<std::string>()->default_value("."),

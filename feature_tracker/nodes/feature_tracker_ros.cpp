@@ -46,18 +46,31 @@ FeatureTrackerRos::~FeatureTrackerRos() {
 }
 
 void FeatureTrackerRos::readConfiguration() {
-  const Parameters parameters = vins_msgs::loadConfiguration(private_handle_);
-  rig_ = readRigConfiguration(parameters);
-  options_ = readFeatureTrackerOptions(parameters);
-  const cv::Mat mask = readMaskFile(options_.mask_file, rig_.cameras.front()->imageSize());
-  tracker_ = std::make_unique<FeatureTracker>(rig_.cameras, rig_.T_bc, options_, mask);
-  uses_imu_ = rig_.rotation_known && !rig_.imu_topic.empty();
-  queue_ = std::make_unique<InputQueue>(rig_.cameras.size() == 2, uses_imu_, rig_.td);
+  const vins_msgs::NodeConfiguration configuration = vins_msgs::loadConfiguration(private_handle_);
+  vins_msgs::logWarnings(configuration);
+  rig_ = configuration.rig;
+  camera_model::requireImageTopic(configuration.parameters, rig_);
+  options_ = readFeatureTrackerOptions(configuration.parameters, rig_);
+  makeTracker();
+  uses_imu_ = options_.uses_gyroscope && !rig_.imu.topic.empty();
+  queue_ = std::make_unique<InputQueue>(cameras_.size() == 2, uses_imu_, rig_.cameras.front().td);
   std::ostringstream text;
   text << options_;
-  ROS_INFO_STREAM("feature tracker, from " << parameters.name() << ":\n" << text.str());
+  ROS_INFO_STREAM("feature tracker, from " << rig_.file << ":\n" << text.str());
   if (!uses_imu_)
     ROS_WARN("no imu_topic or no extrinsic rotation: tracks are predicted without it");
+}
+
+void FeatureTrackerRos::makeTracker() {
+  std::vector<Pose> T_bc;
+  for (const camera_model::RigCamera& camera : rig_.cameras) {
+    // Not more than the tracker takes, and none that no topic feeds.
+    if (cameras_.size() == 2 || camera.image_topic.empty()) break;
+    cameras_.push_back(camera.camera);
+    T_bc.push_back(camera.T_bc);
+  }
+  const cv::Mat mask = readMaskFile(options_.mask_file, cameras_.front()->imageSize());
+  tracker_ = std::make_unique<FeatureTracker>(cameras_, T_bc, options_, mask);
 }
 
 void FeatureTrackerRos::advertise() {
@@ -71,15 +84,16 @@ void FeatureTrackerRos::advertise() {
 }
 
 void FeatureTrackerRos::subscribe() {
-  subscribeCamera(0, rig_.image_topic);
-  if (rig_.cameras.size() == 2) subscribeCamera(1, rig_.second_image_topic);
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    subscribeCamera(static_cast<int>(i), rig_.cameras[i].image_topic);
+  }
   if (!uses_imu_) return;
   const boost::function<void(const sensor_msgs::ImuConstPtr&)> take =
       [this](const sensor_msgs::ImuConstPtr& message) {
         queue_->addImu(vins_msgs::fromMsg(*message));
       };
   subscribers_.push_back(handle_.subscribe<sensor_msgs::Imu>(
-      rig_.imu_topic, kImuQueue, take, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+      rig_.imu.topic, kImuQueue, take, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
 }
 
 void FeatureTrackerRos::subscribeCamera(int camera, const std::string& topic) {
@@ -164,9 +178,9 @@ void FeatureTrackerRos::publishPicture(const FeatureFrame& frame,
                                        const std::vector<cv::Mat>& images,
                                        const std_msgs::Header& header) {
   if (!options_.draw_tracks || picture_publisher_.getNumSubscribers() == 0) return;
-  cv::Mat picture = drawTracks(images[0], frame, *rig_.cameras[0]);
-  if (images.size() == 2 && rig_.cameras.size() == 2 && images[1].rows == picture.rows) {
-    cv::hconcat(picture, drawTracks(images[1], frame, *rig_.cameras[1], 1), picture);
+  cv::Mat picture = drawTracks(images[0], frame, *cameras_[0]);
+  if (images.size() == 2 && cameras_.size() == 2 && images[1].rows == picture.rows) {
+    cv::hconcat(picture, drawTracks(images[1], frame, *cameras_[1], 1), picture);
   }
   picture_publisher_.publish(cv_bridge::CvImage(header, "bgr8", picture).toImageMsg());
 }
@@ -199,8 +213,8 @@ void FeatureTrackerRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& st
     health_.dropped = dropped;
   }
   summarize(health, dropped - health.dropped, &status);
-  status.add("image topic", rig_.image_topic);
-  status.add("IMU topic", rig_.imu_topic);
+  status.add("image topic", rig_.cameras[0].image_topic);
+  status.add("IMU topic", rig_.imu.topic);
   status.add("images", health.images);
   status.add("images refused", health.refused);
   status.add("images dropped", dropped);
@@ -214,7 +228,7 @@ void FeatureTrackerRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& st
 void FeatureTrackerRos::summarize(const Health& health, int newly_dropped,
                                   diagnostic_updater::DiagnosticStatusWrapper* status) const {
   using Level = diagnostic_msgs::DiagnosticStatus;
-  const std::string of_topic = " on " + rig_.image_topic;
+  const std::string of_topic = " on " + rig_.cameras[0].image_topic;
   if (!health.last_problem.empty()) return status->summary(Level::ERROR, health.last_problem);
   if (health.images == 0) {
     return status->summary(Level::WARN, "no image yet" + of_topic +
@@ -229,7 +243,7 @@ void FeatureTrackerRos::summarize(const Health& health, int newly_dropped,
     status->summary(Level::WARN, "only " + std::to_string(health.statistics.inliers) +
                                      " tracks: is the lens free, is there light and texture?");
   } else if (uses_imu_ && health.images > 1 && !health.statistics.turn_measured) {
-    status->mergeSummary(Level::WARN, "no IMU samples for the images on " + rig_.imu_topic +
+    status->mergeSummary(Level::WARN, "no IMU samples for the images on " + rig_.imu.topic +
                                           ": is imu_topic right, do both stamps come from one "
                                           "clock?");
   }

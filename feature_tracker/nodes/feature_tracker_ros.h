@@ -11,16 +11,16 @@
 #include <ros/ros.h>
 #include <sensor_msgs/Imu.h>
 
+#include "camera_model/rig.h"
 #include "feature_tracker/feature_tracker.h"
 #include "image_conversion.h"
 #include "input_queue.h"
-#include "rig_configuration.h"
 
 namespace vins::feature_tracker {
 
 /// The feature tracker's ROS face, of node and nodelet alike.
 ///
-/// Private parameters: `config_file`, path of the rig's YAML file (needed; see RigConfiguration and
+/// Private parameters: `config_file`, path of the rig's YAML file (needed; see readRig() and
 /// FeatureTrackerOptions for its keys); `image_transport`, "raw" (default), "compressed" (JPEG or
 /// PNG by <image_topic>/compressed, decoded here), or another transport that is installed.
 ///
@@ -50,6 +50,7 @@ class FeatureTrackerRos {
   };
 
   void readConfiguration();
+  void makeTracker();
   void advertise();
   void subscribe();
   void subscribeCamera(int camera, const std::string& topic);
@@ -67,7 +68,8 @@ class FeatureTrackerRos {
                  diagnostic_updater::DiagnosticStatusWrapper* status) const;
 
   ros::NodeHandle handle_, private_handle_;
-  RigConfiguration rig_;
+  camera_model::Rig rig_;
+  std::vector<std::shared_ptr<const camera_model::Camera>> cameras_;  // that are followed: 1 or 2
   bool uses_imu_ = false;
   FeatureTrackerOptions options_;
   std::unique_ptr<FeatureTracker> tracker_;

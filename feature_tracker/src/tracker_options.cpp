@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "vins_core/folder.h"
 #include "vins_core/option_check.h"
 
 namespace vins::feature_tracker {
@@ -20,13 +19,6 @@ constexpr Range kBackward{0.01, 10};
 constexpr Range kMaxGap{0.01, 100};
 constexpr Range kMinTracks{0, 5000};
 constexpr Range kSeed{0, 2147483647};
-
-/// The mask's path, seen from the configuration file's folder.
-std::string maskFile(const Parameters& parameters) {
-  const std::string mask = parameters.textOr("fisheye_mask", "");
-  if (!parameters.flagOr("fisheye", false) || mask.empty()) return "";
-  return pathSeenFrom(parameters.name(), mask);
-}
 
 }  // namespace
 
@@ -52,6 +44,7 @@ std::ostream& operator<<(std::ostream& out, const FeatureTrackerOptions& options
              << "equalize: " << (options.equalization == Equalization::kWhereDull) << "\n"
              << "show_track: " << options.draw_tracks << "\n"
              << "fisheye_mask: " << (options.mask_file.empty() ? "none" : options.mask_file) << "\n"
+             << "gyroscope predicts: " << options.uses_gyroscope << "\n"
              << "feature_border: " << options.border << " px\n"
              << "corner_quality: " << options.corner_quality << " grey values/px\n"
              << "klt_window: " << options.window << " px\n"
@@ -62,7 +55,8 @@ std::ostream& operator<<(std::ostream& out, const FeatureTrackerOptions& options
              << "tracker_seed: " << options.seed << "\n";
 }
 
-FeatureTrackerOptions readFeatureTrackerOptions(const Parameters& parameters) {
+FeatureTrackerOptions readFeatureTrackerOptions(const Parameters& parameters,
+                                                const camera_model::Rig& rig) {
   FeatureTrackerOptions options;
   const auto number = [&](const char* key, double* value, const Range& allowed) {
     *value = parameters.numberOr(key, *value, allowed);
@@ -77,7 +71,8 @@ FeatureTrackerOptions readFeatureTrackerOptions(const Parameters& parameters) {
   const bool equalize = parameters.flagOr("equalize", false);
   options.equalization = equalize ? Equalization::kWhereDull : Equalization::kNever;
   options.draw_tracks = parameters.flagOr("show_track", options.draw_tracks);
-  options.mask_file = maskFile(parameters);
+  options.mask_file = rig.cameras.front().mask_file;
+  options.uses_gyroscope = rig.rotationIsKnown();
   integer("feature_border", &options.border, kBorder);
   number("corner_quality", &options.corner_quality, kQuality);
   integer("klt_window", &options.window, kWindow);

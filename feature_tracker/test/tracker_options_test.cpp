@@ -11,7 +11,15 @@ namespace vins::feature_tracker {
 namespace {
 
 FeatureTrackerOptions optionsOf(const std::string& text) {
-  return readFeatureTrackerOptions(Parameters::parse("%YAML:1.0\n---\n" + text, "/rigs/rig.yaml"));
+  const Parameters parameters = Parameters::parse(
+      "%YAML:1.0\n---\nmodel_type: PINHOLE\nimage_width: 752\nimage_height: 480\n"
+      "projection_parameters: {fx: 460.0, fy: 460.0, cx: 376.0, cy: 240.0}\n"
+      "distortion_parameters: {k1: 0.0, k2: 0.0, p1: 0.0, p2: 0.0}\n"
+      "acc_n: 0.08\ngyr_n: 0.004\nacc_w: 4.0e-5\ngyr_w: 2.0e-6\n"
+      "body_T_cam0: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n" +
+          text,
+      "/rigs/rig.yaml");
+  return readFeatureTrackerOptions(parameters, camera_model::readRig(parameters));
 }
 
 TEST(TrackerOptions, ReadsTheKeysOfVinsMono) {
@@ -36,6 +44,13 @@ TEST(TrackerOptions, HasDefaults) {
   std::ostringstream out;
   out << options;
   EXPECT_NE(out.str().find("max_cnt: 150"), std::string::npos);
+}
+
+TEST(TrackerOptions, TheGyroscopeIsOfNoUseWhereTheExtrinsicIsUnknown) {
+  EXPECT_TRUE(optionsOf("estimate_extrinsic: 0\n").uses_gyroscope);
+  EXPECT_TRUE(optionsOf("estimate_extrinsic: 1\n").uses_gyroscope);
+  // Although the file has a matrix.
+  EXPECT_FALSE(optionsOf("estimate_extrinsic: 2\n").uses_gyroscope);
 }
 
 TEST(TrackerOptions, RefuseWhatIsOutOfRange) {

@@ -6,10 +6,8 @@
 #include <ros/package.h>
 #include <sensor_msgs/image_encodings.h>
 
-#include "camera_model/camera_file.h"
 #include "vins_core/input_error.h"
 #include "vins_msgs/conversions.h"
-#include "vins_msgs/node_configuration.h"
 
 namespace vins::pose_graph {
 namespace {
@@ -25,11 +23,11 @@ PoseGraphFrames framesOf(const ros::NodeHandle& private_node) {
   return frames;
 }
 
-std::unique_ptr<PoseGraph> makeGraph(const Parameters& parameters,
+std::unique_ptr<PoseGraph> makeGraph(const camera_model::Rig& rig,
                                      const PoseGraphConfiguration& configuration) {
   const std::string shipped = ros::package::getPath("pose_graph") + "/support_files";
   ROS_INFO_STREAM("pose graph options:\n" << configuration.options);
-  return std::make_unique<PoseGraph>(configuration.options, camera_model::readCamera(parameters),
+  return std::make_unique<PoseGraph>(configuration.options, rig.cameras.front().camera,
                                      readPlaceModel(configuration.files, shipped));
 }
 
@@ -57,8 +55,8 @@ PoseGraphRos::PoseGraphRos(const ros::NodeHandle& node, const ros::NodeHandle& p
     : PoseGraphRos(node, private_node, vins_msgs::loadConfiguration(private_node)) {}
 
 PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
-                           const Parameters& parameters)
-    : configuration_(readPoseGraphConfiguration(parameters)),
+                           const vins_msgs::NodeConfiguration& configuration)
+    : configuration_(readPoseGraphConfiguration(configuration.parameters)),
       publisher_(private_node, framesOf(private_node)),
       pictures_(static_cast<std::size_t>(configuration_.options.thinning.max_keyframes)),
       images_(kRecentImages),
@@ -77,8 +75,9 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
         node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, pass));
     return;
   }
-  image_topic_ = parameters.text("image_topic");
-  graph_ = makeGraph(parameters, configuration_);
+  camera_model::requireImageTopic(configuration.parameters, configuration.rig);
+  image_topic_ = configuration.rig.cameras.front().image_topic;
+  graph_ = makeGraph(configuration.rig, configuration_);
   private_node.param("save_map", save_at_end_, save_at_end_);
   loadFirstMap(private_node);
   subscribe(node);

@@ -24,6 +24,7 @@
 #include "vins_msgs/Keyframe.h"
 #include "vins_msgs/KeyframePoseUpdate.h"
 #include "vins_msgs/LoopEdge.h"
+#include "vins_msgs/node_configuration.h"
 
 namespace vins::pose_graph {
 
@@ -52,7 +53,8 @@ class PoseGraphRos {
   using Input =
       std::variant<Keyframe, KeyframePoseUpdate, LoopEdge, nav_msgs::Odometry, MapRequest>;
 
-  PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node, const Parameters& parameters);
+  PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
+               const vins_msgs::NodeConfiguration& configuration);
   void subscribe(ros::NodeHandle node);
   void onImage(const sensor_msgs::Image::ConstPtr& message);
   void push(Input input);

@@ -1,14 +1,13 @@
 #include "simulation/rig.h"
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <sstream>
 
 #include "camera_model/camera_file.h"
 #include "simulation/random.h"
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
+#include "vins_core/yaml_text.h"
 
 namespace vins::simulation {
 namespace {
@@ -41,25 +40,6 @@ std::shared_ptr<const camera_model::Camera> perturbed(const camera_model::Camera
     parameters[i] += sigmas * deviation * random->normal();
   }
   return camera.withParameters(parameters);
-}
-
-/// The shortest of 15 and 17 digits that is read back as the same number.
-std::string exact(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.15g", value);
-  if (std::strtod(text, nullptr) != value) std::snprintf(text, sizeof(text), "%.17g", value);
-  return text;
-}
-
-std::string matrixText(const std::string& key, const Eigen::MatrixXd& matrix) {
-  std::string data;
-  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-    for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
-      data += (data.empty() ? "" : ", ") + exact(matrix(row, column));
-    }
-  }
-  return key + ": !!opencv-matrix\n   rows: " + std::to_string(matrix.rows()) +
-         "\n   cols: " + std::to_string(matrix.cols()) + "\n   dt: d\n   data: [" + data + "]\n";
 }
 
 /// Keys of VINS-Mono that have nothing to do with the rig, at the values of its EuRoC example but
@@ -95,18 +75,19 @@ std::string imuText(const Rig& rig) {
   return "\n# IMU: densities [m/s^2/sqrt(Hz)], [rad/s/sqrt(Hz)], [m/s^3/sqrt(Hz)], "
          "[rad/s^2/sqrt(Hz)]; gravity [m/s^2]\n"
          "acc_n: " +
-         exact(rig.noise.accelerometer_noise) + "\ngyr_n: " + exact(rig.noise.gyroscope_noise) +
-         "\nacc_w: " + exact(rig.noise.accelerometer_walk) +
-         "\ngyr_w: " + exact(rig.noise.gyroscope_walk) + "\ng_norm: " + exact(rig.noise.gravity) +
-         "\n";
+         exactNumber(rig.noise.accelerometer_noise) +
+         "\ngyr_n: " + exactNumber(rig.noise.gyroscope_noise) +
+         "\nacc_w: " + exactNumber(rig.noise.accelerometer_walk) +
+         "\ngyr_w: " + exactNumber(rig.noise.gyroscope_walk) +
+         "\ng_norm: " + exactNumber(rig.noise.gravity) + "\n";
 }
 
 std::string timingText(const Rig& rig) {
   std::ostringstream text;
   text << "\n# Timing: t_imu = t_cam + td [s]; read-out of all rows [s]\n"
-       << "estimate_td: " << rig.estimate_time_offset << "\ntd: " << exact(rig.time_offset)
+       << "estimate_td: " << rig.estimate_time_offset << "\ntd: " << exactNumber(rig.time_offset)
        << "\nrolling_shutter: " << (rig.rolling_shutter_readout > 0.0)
-       << "\nrolling_shutter_tr: " << exact(rig.rolling_shutter_readout) << "\n";
+       << "\nrolling_shutter_tr: " << exactNumber(rig.rolling_shutter_readout) << "\n";
   return text.str();
 }
 
@@ -114,7 +95,7 @@ std::string timingText(const Rig& rig) {
 
 Rig withCalibrationError(const Rig& rig, double sigmas, std::uint64_t seed) {
   if (!std::isfinite(sigmas) || sigmas < 0.0) {
-    throw InputError("calibration error: found " + exact(sigmas) +
+    throw InputError("calibration error: found " + exactNumber(sigmas) +
                      "; allowed: a number of sigmas of at least 0");
   }
   if (sigmas == 0.0) return rig;
@@ -137,8 +118,8 @@ std::string toVinsYaml(const Rig& rig, std::size_t camera) {
          std::to_string(camera) + "/image_raw\"\noutput_path: \"/tmp/vins_output/\"\n" +
          "\n# Camera in the body (IMU) frame; 0: trust it, 1: refine it\nestimate_extrinsic: " +
          (rig.estimate_extrinsic ? "1" : "0") + "\n" +
-         matrixText("extrinsicRotation", rig.T_bc[camera].rotation.toRotationMatrix()) +
-         matrixText("extrinsicTranslation", rig.T_bc[camera].position) + kTrackerAndSolver +
+         opencvMatrix("extrinsicRotation", rig.T_bc[camera].rotation.toRotationMatrix()) +
+         opencvMatrix("extrinsicTranslation", rig.T_bc[camera].position) + kTrackerAndSolver +
          imuText(rig) + timingText(rig) + kLoopAndMap;
 }
 

@@ -77,7 +77,8 @@ TEST_P(CalibrationTool, RecoversTheCameraFromRenderedImages) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllModels, CalibrationTool,
-                         ::testing::Values("pinhole", "fisheye", "omni", "ocam"),
+                         ::testing::Values("pinhole", "fisheye", "omni", "ocam", "double_sphere",
+                                           "eucm"),
                          [](const auto& info) { return info.param; });
 
 TEST(CalibrationToolErrors, TellWhatToDo) {

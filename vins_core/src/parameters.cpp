@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -20,9 +21,20 @@ namespace vins {
 struct Parameters::Section {
   std::string file;
   YAML::Node node;
-  std::set<std::string> asked;
+  std::shared_ptr<std::vector<std::string>> remarks;  ///< of all sections of the file
+  std::set<std::string> asked = {};
+  std::map<std::string, std::shared_ptr<Section>> sections = {};  ///< that were asked for
 
-  bool has(const std::string& key) const { return find(key).IsDefined(); }
+  bool has(const std::string& key) const {
+    const YAML::Node value = find(key);
+    return value.IsDefined() && !value.IsNull();
+  }
+
+  /// Marks the key as known; whether it has a value.
+  bool given(const std::string& key) {
+    asked.insert(key);
+    return has(key);
+  }
 
   /// Marks the key as known; undefined node where it is absent.
   YAML::Node ask(const std::string& key) {
@@ -32,6 +44,16 @@ struct Parameters::Section {
 
   YAML::Node find(const std::string& key) const {
     return static_cast<const YAML::Node&>(node)[key];
+  }
+
+  /// Line of a key's value; of the key itself where it has none: a null has the place of what
+  /// follows. 0 where the key is absent.
+  int lineOfValue(const std::string& key) const {
+    for (const auto& item : node) {
+      if (item.first.Scalar() == key)
+        return lineOf(item.second.IsNull() ? item.first : item.second);
+    }
+    return 0;
   }
 
   std::vector<std::string> unasked() const {
@@ -64,9 +86,9 @@ std::string describe(const char* kind, const Range& allowed) {
   return out.str();
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string joined(const std::vector<std::string>& words, const std::string& separator = ", ") {
   std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) line += (line.empty() ? "" : separator) + word;
   return line;
 }
 
@@ -120,7 +142,13 @@ Parameters Parameters::load(const std::string& path) {
 }
 
 Parameters Parameters::parse(const std::string& text, const std::string& name) {
-  return {name, std::make_shared<Section>(Section{name, parseYamlMap(text, name), {}})};
+  std::vector<std::string> repairs;
+  const YAML::Node root = parseYamlMap(text, name, &repairs);
+  auto remarks = std::make_shared<std::vector<std::string>>();
+  if (!repairs.empty()) {
+    remarks->push_back(name + ": mended as OpenCV reads it: " + joined(repairs, "; "));
+  }
+  return {name, std::make_shared<Section>(Section{name, root, remarks})};
 }
 
 bool Parameters::has(const std::string& key) const { return section_->has(key); }
@@ -141,7 +169,7 @@ double Parameters::number(const std::string& key, const Range& allowed) const {
 }
 
 double Parameters::numberOr(const std::string& key, double fallback, const Range& allowed) const {
-  return section_->ask(key).IsDefined() ? number(key, allowed) : fallback;
+  return section_->given(key) ? number(key, allowed) : fallback;
 }
 
 int Parameters::integer(const std::string& key, const Range& allowed) const {
@@ -155,20 +183,22 @@ int Parameters::integer(const std::string& key, const Range& allowed) const {
 }
 
 int Parameters::integerOr(const std::string& key, int fallback, const Range& allowed) const {
-  return section_->ask(key).IsDefined() ? integer(key, allowed) : fallback;
+  return section_->given(key) ? integer(key, allowed) : fallback;
 }
 
 bool Parameters::flag(const std::string& key) const {
   const YAML::Node node = section_->ask(key);
   const std::string value =
       node.IsDefined() && node.IsScalar() ? lowered(node.Scalar()) : std::string();
-  if (value == "1" || value == "true" || value == "yes" || value == "on") return true;
-  if (value == "0" || value == "false" || value == "no" || value == "off") return false;
+  const std::optional<double> number = node.IsDefined() ? asNumber(node) : std::nullopt;
+  if (number == 0.0 || number == 1.0) return *number == 1.0;
+  if (value == "true" || value == "yes" || value == "on") return true;
+  if (value == "false" || value == "no" || value == "off") return false;
   fail(key, vins::describe(node), "0 or 1");
 }
 
 bool Parameters::flagOr(const std::string& key, bool fallback) const {
-  return section_->ask(key).IsDefined() ? flag(key) : fallback;
+  return section_->given(key) ? flag(key) : fallback;
 }
 
 std::string Parameters::text(const std::string& key,
@@ -185,7 +215,7 @@ std::string Parameters::text(const std::string& key,
 
 std::string Parameters::textOr(const std::string& key, const std::string& fallback,
                                const std::vector<std::string>& allowed) const {
-  return section_->ask(key).IsDefined() ? text(key, allowed) : fallback;
+  return section_->given(key) ? text(key, allowed) : fallback;
 }
 
 std::vector<double> Parameters::numbers(const std::string& key,
@@ -218,12 +248,30 @@ Parameters Parameters::section(const std::string& key) const {
   if (!node.IsDefined() || !node.IsMap()) {
     fail(key, vins::describe(node), "a section of lines 'key: value'");
   }
-  return {name_ + ": " + key, std::make_shared<Section>(Section{section_->file, node, {}})};
+  std::shared_ptr<Section>& section = section_->sections[key];
+  if (!section)
+    section = std::make_shared<Section>(Section{section_->file, node, section_->remarks});
+  return {name_ + ": " + key, section};
+}
+
+bool Parameters::isSection(const std::string& key) const {
+  const YAML::Node node = section_->find(key);
+  return node.IsDefined() && node.IsMap();
 }
 
 void Parameters::know(const std::vector<std::string>& keys) const {
   section_->asked.insert(keys.begin(), keys.end());
 }
+
+std::vector<std::string> Parameters::unknownKeys() const { return section_->unasked(); }
+
+void Parameters::remark(const std::string& key, const std::string& text) const {
+  const int line = section_->lineOfValue(key);
+  const std::string place = line > 0 ? ":" + std::to_string(line) : "";
+  section_->remarks->push_back(section_->file + place + ": " + text);
+}
+
+std::vector<std::string> Parameters::remarks() const { return *section_->remarks; }
 
 std::vector<std::string> Parameters::warnings() const {
   const std::vector<std::string> known(section_->asked.begin(), section_->asked.end());
@@ -241,15 +289,14 @@ std::vector<std::string> Parameters::warnings() const {
 
 void Parameters::fail(const std::string& key, const std::string& found,
                       const std::string& allowed) const {
-  const YAML::Node node = section_->find(key);
-  if (node.IsDefined()) {
-    throw InputError(section_->file + ":" + std::to_string(lineOf(node)) + ": key '" + key +
-                     "': found " + found + "; allowed: " + allowed);
+  if (const int line = section_->lineOfValue(key); line > 0) {
+    throw InputError(section_->file + ":" + std::to_string(line) + ": key '" + key + "': found " +
+                     found + "; allowed: " + allowed);
   }
   const std::string similar = nearestWord(key, section_->unasked());
   throw InputError(name_ + ": key '" + key + "' is missing; allowed: " + allowed +
                    (similar.empty() ? ""
-                                    : "; line " + std::to_string(lineOf(section_->find(similar))) +
+                                    : "; line " + std::to_string(section_->lineOfValue(similar)) +
                                           " has '" + similar + "': is that meant?"));
 }
 

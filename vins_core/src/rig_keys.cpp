@@ -9,6 +9,8 @@ constexpr const char* kKeys[] = {
     // Topics and results
     "imu_topic",
     "image_topic",
+    "camera_info_topic",
+    "accel_topic",
     "output_path",
     // Camera
     "model_type",
@@ -22,6 +24,7 @@ constexpr const char* kKeys[] = {
     "affine_parameters",
     "inv_poly_parameters",
     "cam0",
+    "cam1",
     // Camera in the body frame
     "estimate_extrinsic",
     "extrinsicRotation",
@@ -48,6 +51,8 @@ constexpr const char* kKeys[] = {
     "accelerometer_random_walk",
     "gyroscope_random_walk",
     "imu0",
+    "update_rate",
+    "rostopic",
     // Feature tracker
     "max_cnt",
     "min_dist",
@@ -87,13 +92,28 @@ constexpr const char* kKeys[] = {
     "save_image",
     "vocabulary_file",
     "brief_pattern_file",
-    // Two cameras
+    // VINS-Fusion's form, and more cameras
+    "imu",
+    "num_of_cam",
     "image0_topic",
     "image1_topic",
     "cam0_calib",
     "cam1_calib",
     "body_T_cam0",
     "body_T_cam1",
+    "td1",
+    "multiple_thread",
+    "flow_back",
+    "use_gpu",
+    "use_gpu_good_feature",
+    "use_gpu_acc_flow",
+    // OpenVINS's form
+    "relative_config_imu",
+    "relative_config_imucam",
+    "max_cameras",
+    "calib_cam_extrinsics",
+    "calib_cam_timeoffset",
+    "gravity_mag",
     // Of VINS-Mono, without effect
     "visualize_imu_forward",
     "visualize_camera_size",

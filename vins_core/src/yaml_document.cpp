@@ -2,29 +2,21 @@
 
 #include <map>
 
+#include "opencv_yaml.h"
 #include "vins_core/input_error.h"
 
 namespace vins {
 namespace {
-
-/// OpenCV writes "%YAML:1.0" where YAML wants "%YAML 1.0"; as a comment it says the same, and the
-/// lines keep their numbers.
-std::string withoutOpencvDirective(const std::string& text) {
-  const std::size_t start = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  if (start == std::string::npos || text.compare(start, 6, "%YAML:") != 0) return text;
-  std::string plain = text;
-  plain[start] = '#';
-  return plain;
-}
 
 std::string place(const std::string& name, const YAML::Mark& mark) {
   if (mark.is_null()) return name;
   return name + ":" + std::to_string(mark.line + 1);
 }
 
-void refuseRepeatedKeys(const YAML::Node& node, const std::string& name) {
+/// Lookup in a YAML::Node finds the first of several equal keys, so nothing is to be changed.
+void reportRepeatedKeys(const YAML::Node& node, std::vector<std::string>* repairs) {
   if (node.IsSequence()) {
-    for (const YAML::Node& item : node) refuseRepeatedKeys(item, name);
+    for (const YAML::Node& item : node) reportRepeatedKeys(item, repairs);
   }
   if (!node.IsMap()) return;
   std::map<std::string, int> lines;
@@ -32,20 +24,21 @@ void refuseRepeatedKeys(const YAML::Node& node, const std::string& name) {
     const std::string key = item.first.IsScalar() ? item.first.Scalar() : "";
     const auto [first, is_new] = lines.emplace(key, lineOf(item.first));
     if (!is_new) {
-      throw InputError(place(name, item.first.Mark()) + ": key '" + key +
-                       "' stands here and in line " + std::to_string(first->second) +
-                       "; allowed: once");
+      repairs->push_back("line " + std::to_string(lineOf(item.first)) + ": '" + key +
+                         "' is given again; the value of line " + std::to_string(first->second) +
+                         " counts");
     }
-    refuseRepeatedKeys(item.second, name);
+    reportRepeatedKeys(item.second, repairs);
   }
 }
 
 }  // namespace
 
-YAML::Node parseYamlMap(const std::string& text, const std::string& name) {
+YAML::Node parseYamlMap(const std::string& text, const std::string& name,
+                        std::vector<std::string>* repairs) {
   YAML::Node root;
   try {
-    root = YAML::Load(withoutOpencvDirective(text));
+    root = YAML::Load(standardYaml(text, repairs));
   } catch (const YAML::Exception& error) {
     throw InputError(place(name, error.mark) + ": not valid YAML at column " +
                      std::to_string(error.mark.column + 1) + ": " + error.msg);
@@ -54,7 +47,7 @@ YAML::Node parseYamlMap(const std::string& text, const std::string& name) {
     throw InputError(name + ": found " + describe(root) +
                      "; allowed: lines of the form 'key: value'");
   }
-  refuseRepeatedKeys(root, name);
+  reportRepeatedKeys(root, repairs);
   return root;
 }
 

@@ -1,14 +1,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <yaml-cpp/yaml.h>
 
 namespace vins {
 
-/// Root of the YAML document `text`, which must be a map without repeated keys at any depth.
-/// OpenCV's "%YAML:1.0" line is accepted. Throws InputError with `name`, line and column.
-YAML::Node parseYamlMap(const std::string& text, const std::string& name);
+/// Root of the YAML document `text`, which must be a map. What OpenCV's reader accepts and YAML
+/// does not is repaired, see standardYaml(); of a key that is given twice the first value counts,
+/// as with OpenCV. `repairs` gets a text for each. Throws InputError with `name`, line and column.
+YAML::Node parseYamlMap(const std::string& text, const std::string& name,
+                        std::vector<std::string>* repairs);
 
 /// Line of a node, counted from 1.
 int lineOf(const YAML::Node& node);

@@ -5,7 +5,6 @@
 
 #include "vins_core/input_error.h"
 #include "vins_msgs/conversions.h"
-#include "vins_msgs/node_configuration.h"
 
 namespace vins::estimator {
 namespace {
@@ -16,8 +15,9 @@ constexpr std::size_t kManyWaiting = 5;  // frames: a quarter of a second behind
 constexpr double kSilence = 2.0;         // without input, before somebody is told [s]
 const char* const kFeatureTopic = "/feature_tracker/feature";
 
-EstimatorOptions loadOptions(const Parameters& parameters) {
-  const EstimatorOptions options = readEstimatorOptions(parameters);
+EstimatorOptions loadOptions(const vins_msgs::NodeConfiguration& configuration) {
+  const EstimatorOptions options =
+      readEstimatorOptions(configuration.parameters, configuration.rig);
   ROS_INFO_STREAM("estimator options:\n" << options);
   return options;
 }
@@ -60,13 +60,14 @@ EstimatorRos::EstimatorRos(const ros::NodeHandle& node, const ros::NodeHandle& p
     : EstimatorRos(node, private_node, vins_msgs::loadConfiguration(private_node)) {}
 
 EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
-                           const Parameters& parameters)
-    : options_(loadOptions(parameters)),
+                           const vins_msgs::NodeConfiguration& configuration)
+    : options_(loadOptions(configuration)),
+      imu_topic_(configuration.rig.imu.topic),
       estimator_(options_),
       publisher_(private_node, framesOf(private_node)),
       propagator_(options_.imu),
       diagnostics_(node, private_node) {
-  imu_topic_ = parameters.text("imu_topic");
+  camera_model::requireImuTopic(configuration.parameters, configuration.rig);
   diagnostics_.setHardwareID("visual-inertial rig");
   diagnostics_.add("estimator", this, &EstimatorRos::report);
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();

@@ -20,6 +20,7 @@
 #include "vins_estimator/inertial/propagator.h"
 #include "vins_msgs/FeatureFrame.h"
 #include "vins_msgs/LoopMatch.h"
+#include "vins_msgs/node_configuration.h"
 
 namespace vins::estimator {
 
@@ -46,7 +47,8 @@ class EstimatorRos {
     bool restart = false;
   };
 
-  EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node, const Parameters& parameters);
+  EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
+               const vins_msgs::NodeConfiguration& configuration);
   void onImu(const sensor_msgs::Imu::ConstPtr& message);
   void onFeatures(const vins_msgs::FeatureFrame::ConstPtr& message);
   void onLoopMatch(const vins_msgs::LoopMatch::ConstPtr& message);

@@ -2,10 +2,8 @@
 
 #include <cmath>
 #include <sstream>
-#include <string>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include "vins_core/input_error.h"
 #include "vins_core/option_check.h"
@@ -13,8 +11,6 @@
 namespace vins::estimator {
 namespace {
 
-constexpr Range kDensity{1e-9, 100.0};
-constexpr Range kGravity{9.0, 10.5};  ///< [m/s^2]
 constexpr Range kTimeOffset{-1.0, 1.0};
 constexpr Range kPixelNoise{0.05, 20.0};
 constexpr Range kWindowSize{4, 30};
@@ -25,74 +21,6 @@ constexpr Range kSolverTime{0.0, 10.0};
 constexpr Range kReadout{0.0, 0.2};
 constexpr Range kHeight{16, 20000};
 constexpr Range kSigma{1e-6, 3.0};
-constexpr double kSampleAbove = 0.03;  ///< no density of a usable accelerometer is [m/s^2/sqrt(Hz)]
-constexpr double kNotOrthogonal = 1e-2;  ///< of R^T R - 1: typed numbers with few digits pass
-
-bool isRotation(const Eigen::Matrix3d& R) {
-  const Eigen::Matrix3d difference = R.transpose() * R - Eigen::Matrix3d::Identity();
-  return difference.cwiseAbs().maxCoeff() < kNotOrthogonal && R.determinant() > 0.0;
-}
-
-Pose poseOf(const Eigen::Matrix3d& R, const Eigen::Vector3d& p) {
-  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
-  T.topLeftCorner<3, 3>() = R;
-  T.topRightCorner<3, 1>() = p;
-  return poseFromMatrix(T);
-}
-
-void requireRotation(const Parameters& parameters, const char* key, const Eigen::Matrix3d& R) {
-  if (isRotation(R)) return;
-  std::ostringstream found;
-  found << "a matrix that is no rotation (determinant " << R.determinant() << ")";
-  parameters.fail(key, found.str(), "a rotation: orthonormal rows, determinant 1");
-}
-
-/// Kalibr's: the IMU's coordinates taken to the camera.
-Pose readKalibrExtrinsic(const Parameters& camera) {
-  const Eigen::Matrix4d T_cb = camera.matrix("T_cam_imu", 4, 4);
-  requireRotation(camera, "T_cam_imu", T_cb.topLeftCorner<3, 3>());
-  return poseFromMatrix(T_cb).inverse();
-}
-
-bool hasKalibrExtrinsic(const Parameters& parameters) {
-  return parameters.has("cam0") && parameters.section("cam0").has("T_cam_imu");
-}
-
-ExtrinsicMode readExtrinsicMode(const Parameters& parameters) {
-  switch (parameters.integerOr("estimate_extrinsic", 0, {0, 2})) {
-    case 0:
-      return ExtrinsicMode::kTrusted;
-    case 1:
-      return ExtrinsicMode::kRefined;
-    default:
-      return ExtrinsicMode::kUnknown;
-  }
-}
-
-Pose readExtrinsic(const Parameters& parameters, ExtrinsicMode mode) {
-  const char* kRotation = "extrinsicRotation";
-  const char* kTranslation = "extrinsicTranslation";
-  const bool is_given = parameters.has(kRotation) || parameters.has(kTranslation);
-  if (!is_given && hasKalibrExtrinsic(parameters)) {
-    return readKalibrExtrinsic(parameters.section("cam0"));
-  }
-  if (!is_given && mode == ExtrinsicMode::kUnknown) return {};
-  if (!parameters.has(kRotation)) {
-    parameters.fail(kRotation, "nothing",
-                    "a matrix of 3 x 3 numbers, camera to body; absent only where "
-                    "estimate_extrinsic is 2");
-  }
-  const Eigen::Matrix3d R_bc = parameters.matrix(kRotation, 3, 3);
-  requireRotation(parameters, kRotation, R_bc);
-  return poseOf(R_bc, parameters.matrix(kTranslation, 3, 1));
-}
-
-double readTimeOffset(const Parameters& parameters) {
-  if (!parameters.has("td") && hasKalibrExtrinsic(parameters)) {
-    return parameters.section("cam0").numberOr("timeshift_cam_imu", 0.0, kTimeOffset);
-  }
-  return parameters.numberOr("td", 0.0, kTimeOffset);
-}
 
 MotionOnly readMotionOnly(const Parameters& parameters) {
   switch (parameters.integerOr("motion_only_ba", 2, {0, 2})) {
@@ -105,22 +33,6 @@ MotionOnly readMotionOnly(const Parameters& parameters) {
   }
 }
 
-double readReadout(const Parameters& parameters) {
-  const bool is_rolling = parameters.flagOr("rolling_shutter", false);
-  const double readout = parameters.numberOr("rolling_shutter_tr", 0.0, kReadout);
-  return is_rolling ? readout : 0.0;
-}
-
-ImuNoise readKalibrNoise(const Parameters& parameters, double gravity) {
-  ImuNoise noise;
-  noise.accelerometer_noise = parameters.number("accelerometer_noise_density", kDensity);
-  noise.accelerometer_walk = parameters.number("accelerometer_random_walk", kDensity);
-  noise.gyroscope_noise = parameters.number("gyroscope_noise_density", kDensity);
-  noise.gyroscope_walk = parameters.number("gyroscope_random_walk", kDensity);
-  noise.gravity = gravity;
-  return noise;
-}
-
 const char* toString(ExtrinsicMode mode) {
   switch (mode) {
     case ExtrinsicMode::kTrusted:
@@ -131,32 +43,6 @@ const char* toString(ExtrinsicMode mode) {
       return "2 (unknown)";
   }
   return "unknown";
-}
-
-/// Everything but the vibration's share.
-ImuNoise readDensities(const Parameters& parameters) {
-  const double gravity = parameters.numberOr("g_norm", 9.81, kGravity);
-  const std::string unit =
-      parameters.textOr("imu_noise_unit", "auto", {"auto", "density", "sample"});
-  const double rate = parameters.numberOr("imu_rate", 200.0, {10.0, 10000.0});
-  if (!parameters.has("acc_n")) {
-    if (parameters.has("accelerometer_noise_density")) return readKalibrNoise(parameters, gravity);
-    if (parameters.has("imu0")) return readKalibrNoise(parameters.section("imu0"), gravity);
-  }
-  ImuNoise noise;
-  noise.accelerometer_noise = parameters.number("acc_n", kDensity);
-  noise.gyroscope_noise = parameters.number("gyr_n", kDensity);
-  noise.accelerometer_walk = parameters.number("acc_w", kDensity);
-  noise.gyroscope_walk = parameters.number("gyr_w", kDensity);
-  noise.gravity = gravity;
-  const bool is_sample =
-      unit == "sample" || (unit == "auto" && noise.accelerometer_noise > kSampleAbove);
-  if (!is_sample) return noise;
-  for (double* value : {&noise.accelerometer_noise, &noise.gyroscope_noise,
-                        &noise.accelerometer_walk, &noise.gyroscope_walk}) {
-    *value /= std::sqrt(rate);
-  }
-  return noise;
 }
 
 }  // namespace
@@ -203,17 +89,16 @@ std::ostream& operator<<(std::ostream& out, const EstimatorOptions& options) {
              << "first_estimates: " << options.first_estimates << "\n";
 }
 
-EstimatorOptions readEstimatorOptions(const Parameters& parameters) {
+EstimatorOptions readEstimatorOptions(const Parameters& parameters, const camera_model::Rig& rig) {
+  const camera_model::RigCamera& camera = rig.cameras.front();
   EstimatorOptions options;
-  options.imu = readImuNoise(parameters);
-  options.extrinsic = readExtrinsicMode(parameters);
-  options.T_bc = readExtrinsic(parameters, options.extrinsic);
-  options.td = readTimeOffset(parameters);
-  options.estimate_td = parameters.flagOr("estimate_td", options.estimate_td);
-  options.rolling_shutter_readout = readReadout(parameters);
-  if (options.rolling_shutter_readout > 0.0) {
-    options.image_height = parameters.integer("image_height", kHeight);
-  }
+  options.imu = rig.imu.noise;
+  options.extrinsic = rig.extrinsic;
+  options.T_bc = camera.T_bc;
+  options.td = camera.td;
+  options.estimate_td = rig.estimate_td;
+  options.rolling_shutter_readout = camera.readout;
+  options.image_height = camera.camera->imageSize().height;
   options.motion_only = readMotionOnly(parameters);
   options.extrinsic_rotation_sigma =
       parameters.numberOr("extrinsic_rotation_sigma", options.extrinsic_rotation_sigma, kSigma);
@@ -231,12 +116,6 @@ EstimatorOptions readEstimatorOptions(const Parameters& parameters) {
       parameters.numberOr("max_solver_time", options.max_solver_time, kSolverTime);
   options.validate();
   return options;
-}
-
-ImuNoise readImuNoise(const Parameters& parameters) {
-  ImuNoise noise = readDensities(parameters);
-  noise.vibration_share = parameters.numberOr("vibration_share", noise.vibration_share, {0.0, 1.0});
-  return noise;
 }
 
 }  // namespace vins::estimator

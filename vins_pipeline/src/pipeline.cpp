@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "camera_model/camera_file.h"
+#include "camera_model/rig.h"
 #include "feature_tracker/mask_file.h"
 #include "vins_core/input_error.h"
 
@@ -34,6 +34,16 @@ void add(const Duration& more, Duration* sum) {
   sum->cpu += more.cpu;
 }
 
+/// The name that a topic of the configuration has in a bag, where names are absolute; says so where
+/// it is another.
+std::string recordedTopic(const std::string& topic, const std::string& fallback,
+                          std::vector<std::string>* remarks) {
+  if (topic.empty()) return fallback;
+  if (topic.front() == '/') return topic;
+  remarks->push_back("topic '" + topic + "' is looked for as '/" + topic + "' in the recording");
+  return "/" + topic;
+}
+
 /// A part of a stage, where it has worked at all.
 void addPart(const char* stage, double seconds, PipelineResult* result) {
   if (seconds > 0.0) result->durations.emplace_back(stage, Duration{seconds, 0.0});
@@ -43,19 +53,25 @@ void addPart(const char* stage, double seconds, PipelineResult* result) {
 
 PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings) {
   const Parameters parameters = Parameters::load(path);
+  const camera_model::Rig rig = camera_model::readRig(parameters);
+  const camera_model::RigCamera& camera = rig.cameras.front();
   PipelineOptions options;
-  options.cameras = {camera_model::readCamera(parameters)};
-  options.tracker = feature_tracker::readFeatureTrackerOptions(parameters);
-  options.estimator = estimator::readEstimatorOptions(parameters);
+  options.cameras = {camera.camera};
+  options.tracker = feature_tracker::readFeatureTrackerOptions(parameters, rig);
+  options.estimator = estimator::readEstimatorOptions(parameters, rig);
   options.mask =
-      feature_tracker::readMaskFile(options.tracker.mask_file, options.cameras[0]->imageSize());
-  options.imu_topic = parameters.textOr("imu_topic", options.imu_topic);
-  options.image_topics[0] = parameters.textOr("image_topic", options.image_topics[0]);
+      feature_tracker::readMaskFile(options.tracker.mask_file, camera.camera->imageSize());
+  std::vector<std::string> remarks = rig.warnings;
+  options.imu_topic = recordedTopic(rig.imu.topic, options.imu_topic, &remarks);
+  options.image_topics[0] = recordedTopic(camera.image_topic, options.image_topics[0], &remarks);
   options.loops = pose_graph::readPoseGraphConfiguration(parameters);
   if (options.loops.is_on && options.loops.loads_map) options.map = options.loops.map_file;
   // Of VINS-Mono, and of no meaning here.
   parameters.know({"output_path", "visualize_imu_forward", "visualize_camera_size"});
-  if (warnings != nullptr) *warnings = parameters.warnings();
+  if (warnings != nullptr) {
+    *warnings = remarks;
+    for (const std::string& warning : parameters.warnings()) warnings->push_back(warning);
+  }
   return options;
 }
 

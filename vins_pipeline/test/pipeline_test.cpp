@@ -109,6 +109,57 @@ TEST(Pipeline, ARestartedRecordingDoesNotBlock) {
   EXPECT_EQ(processAll(&pipeline).size(), 2u);
 }
 
+/// EuRoC's configuration with another way to treat the extrinsic.
+PipelineOptions optionsWithExtrinsicMode(const std::string& mode) {
+  std::ifstream in(kConfig);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  text.replace(text.find("estimate_extrinsic: 0"), 21, "estimate_extrinsic: " + mode);
+  const std::string path = ::testing::TempDir() + "pipeline_test_extrinsic.yaml";
+  std::ofstream(path) << text;
+  const PipelineOptions options = readPipelineOptions(path, nullptr);
+  std::filesystem::remove(path);
+  return options;
+}
+
+TEST(Pipeline, TheTrackerDoesWithoutTheGyroscopeWhereTheExtrinsicIsUnknown) {
+  for (const std::string mode : {"0", "1", "2"}) {
+    Pipeline pipeline(optionsWithExtrinsicMode(mode));
+    for (int i = 0; i <= 20; ++i) pipeline.addImu(sampleAt(kStart + i * 5 * kMs));
+    pipeline.addImage(kStart, imageAt(0));
+    pipeline.addImage(kStart + 50 * kMs, imageAt(1));
+    const std::vector<PipelineResult> results = processAll(&pipeline);
+    ASSERT_EQ(results.size(), 2u);
+    // The file has a matrix in any case.
+    EXPECT_EQ(results[1].tracker.turn_measured, mode != "2") << mode;
+  }
+}
+
+TEST(PipelineOptions, ReadsAKalibrChainAsItIs) {
+  const std::string path = ::testing::TempDir() + "pipeline_test_chain.yaml";
+  std::ofstream(path)
+      << "cam0:\n  T_cam_imu:\n  - [0.0, 1.0, 0.0, 0.1]\n  - [-1.0, 0.0, 0.0, 0.2]\n"
+         "  - [0.0, 0.0, 1.0, 0.3]\n  - [0.0, 0.0, 0.0, 1.0]\n"
+         "  camera_model: pinhole\n  distortion_model: equidistant\n"
+         "  distortion_coeffs: [0.01, 0.0, 0.0, 0.0]\n"
+         "  intrinsics: [300.0, 300.0, 320.0, 240.0]\n  resolution: [640, 480]\n"
+         "  rostopic: my/image\n  timeshift_cam_imu: 0.004\n"
+         "imu0:\n  accelerometer_noise_density: 0.02\n"
+         "  accelerometer_random_walk: 0.001\n  gyroscope_noise_density: 0.0003\n"
+         "  gyroscope_random_walk: 0.00004\n  rostopic: /my/imu\n";
+  std::vector<std::string> warnings;
+  const PipelineOptions read = readPipelineOptions(path, &warnings);
+  std::filesystem::remove(path);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("'my/image' is looked for as '/my/image'"), std::string::npos);
+  EXPECT_EQ(read.imu_topic, "/my/imu");
+  EXPECT_EQ(read.image_topics, std::vector<std::string>{"/my/image"}) << "absolute, as in bags";
+  EXPECT_EQ(read.cameras.at(0)->model(), camera_model::CameraModel::kKannalaBrandt);
+  EXPECT_EQ(read.estimator.td, 0.004);
+  EXPECT_EQ(read.estimator.imu.gyroscope_walk, 0.00004);
+  EXPECT_TRUE((read.estimator.T_bc * Eigen::Vector3d(0.1, 0.2, 0.3)).isZero(1e-12));
+  EXPECT_TRUE(read.tracker.uses_gyroscope);
+}
+
 TEST(PipelineOptions, TheConfigurationOfEurocIsKnownKeyByKey) {
   std::vector<std::string> warnings;
   const PipelineOptions read = readPipelineOptions(kConfig, &warnings);

@@ -14,10 +14,17 @@ enum class CameraModel {
   kPinhole,        ///< PINHOLE: pinhole with radial and tangential distortion
   kKannalaBrandt,  ///< KANNALA_BRANDT: equidistant fisheye
   kMei,            ///< MEI: unified omnidirectional, with radial and tangential distortion
-  kScaramuzza      ///< SCARAMUZZA: OCam polynomial
+  kScaramuzza,     ///< SCARAMUZZA: OCam polynomial
+  kDoubleSphere,   ///< DOUBLE_SPHERE: two unit spheres and a pinhole
+  kEucm            ///< EUCM: extended unified model, an ellipsoid and a pinhole
 };
 
-/// The model's name in a configuration file: "PINHOLE", "KANNALA_BRANDT", "MEI", "SCARAMUZZA".
+/// All of them.
+constexpr CameraModel kCameraModels[] = {CameraModel::kPinhole,      CameraModel::kKannalaBrandt,
+                                         CameraModel::kMei,          CameraModel::kScaramuzza,
+                                         CameraModel::kDoubleSphere, CameraModel::kEucm};
+
+/// The model's name in a configuration file, as above: "PINHOLE" and so on.
 const char* toString(CameraModel model);
 
 /// Inverse of toString(); letter case and '-' for '_' aside. Throws InputError naming the choices.

@@ -4,6 +4,7 @@
 #include <ostream>
 #include <string>
 
+#include "camera_model/rig.h"
 #include "vins_core/parameters.h"
 
 namespace vins::feature_tracker {
@@ -23,6 +24,9 @@ struct FeatureTrackerOptions {
   Equalization equalization = Equalization::kNever;  ///< equalize
   bool draw_tracks = true;  ///< show_track: a picture is drawn where somebody subscribes
   std::string mask_file;    ///< fisheye_mask where fisheye is 1; empty: no mask
+  /// The gyroscope predicts how the image turns. Needs the camera's rotation in the body frame: not
+  /// where estimate_extrinsic is 2, live and offline alike.
+  bool uses_gyroscope = true;
 
   int border = 8;                   ///< feature_border: no track is nearer to the edge [px]
   double corner_quality = 2.5;      ///< corner_quality: smallest score, see CornerGrid [grey/px]
@@ -40,9 +44,10 @@ struct FeatureTrackerOptions {
 /// A line per option: key, value and unit.
 std::ostream& operator<<(std::ostream& out, const FeatureTrackerOptions& options);
 
-/// Reads the keys named above, as VINS-Mono's configuration files have them. Each has a default. A
-/// relative path of the mask is seen from the file's own folder. Throws InputError naming file,
-/// key, what was found and what is allowed.
-FeatureTrackerOptions readFeatureTrackerOptions(const Parameters& parameters);
+/// Reads the keys named above, as VINS-Mono's configuration files have them. Each has a default.
+/// `rig` decides on the mask and on the gyroscope. Throws InputError naming file, key, what was
+/// found and what is allowed.
+FeatureTrackerOptions readFeatureTrackerOptions(const Parameters& parameters,
+                                                const camera_model::Rig& rig);
 
 }  // namespace vins::feature_tracker

@@ -17,15 +17,18 @@ struct Range {
 };
 
 /// A YAML file of parameters, read strictly. Takes OpenCV's form ("%YAML:1.0", !!opencv-matrix) as
-/// VINS-Mono's configuration files have it, and plain YAML as Kalibr writes it.
+/// VINS-Mono's configuration files have it, and plain YAML as Kalibr writes it. Where OpenCV's
+/// reader is more lenient than YAML it is followed: "key:value", "0.08# noise", a key given twice
+/// (the first counts), a key without a value (as if it were absent); remarks() tells what was met
+/// of this.
 ///
 /// Every getter throws InputError naming file, line, key, what was found and what is allowed; a
 /// key that is absent where it is needed names a similar one that nothing asked for. The getters
 /// remember which keys were asked for, so that warnings() can name the others.
 class Parameters {
  public:
-  /// Reads the file at `path`. Throws where it cannot be read, is no YAML (with line and column),
-  /// is no map at its top, or has a key twice.
+  /// Reads the file at `path`. Throws where it cannot be read, is no YAML (with line and column) or
+  /// is no map at its top.
   static Parameters load(const std::string& path);
 
   /// The same for text; `name` stands for the file in messages.
@@ -35,6 +38,7 @@ class Parameters {
   /// cam0".
   const std::string& name() const { return name_; }
 
+  /// The key is there and has a value.
   bool has(const std::string& key) const;
   std::vector<std::string> keys() const;
 
@@ -46,7 +50,7 @@ class Parameters {
   int integer(const std::string& key, const Range& allowed = {}) const;
   int integerOr(const std::string& key, int fallback, const Range& allowed = {}) const;
 
-  /// 0 or 1, also true/false, yes/no, on/off.
+  /// 0 or 1 in any form of a number, also true/false, yes/no, on/off.
   bool flag(const std::string& key) const;
   bool flagOr(const std::string& key, bool fallback) const;
 
@@ -63,15 +67,30 @@ class Parameters {
   /// A matrix of this size: an !!opencv-matrix, or a sequence of rows.
   Eigen::MatrixXd matrix(const std::string& key, int rows, int cols) const;
 
-  /// The map at `key`, as parameters of their own.
+  /// The map at `key`, as parameters of their own. Asked for again it is the same section, with its
+  /// memory of what was asked for.
   Parameters section(const std::string& key) const;
+
+  /// The value of the key is a map.
+  bool isSection(const std::string& key) const;
 
   /// Remembers keys that others read from the same map, as if a getter had asked for them.
   void know(const std::vector<std::string>& keys) const;
 
+  /// Keys in this map that no getter asked for.
+  std::vector<std::string> unknownKeys() const;
+
   /// One text for each key in this map that no getter asked for, with its line and a likely
   /// meaning: "rig.yaml:12: unknown key 'max_cn' is ignored; did you mean 'max_cnt'?".
   std::vector<std::string> warnings() const;
+
+  /// Notes something about a value that its reader has changed or chosen, "FILE:LINE: TEXT", for
+  /// remarks(). Without the line where the key is absent.
+  void remark(const std::string& key, const std::string& text) const;
+
+  /// What a user should hear of the whole file, all its sections included: in one line how the text
+  /// was mended so that it can be read, then a line for each remark().
+  std::vector<std::string> remarks() const;
 
   /// Throws InputError: "FILE:LINE: key 'KEY': found FOUND; allowed: ALLOWED". For checks that
   /// go beyond a single value.

@@ -2,18 +2,14 @@
 
 #include <ostream>
 
+#include "camera_model/rig.h"
 #include "vins_core/imu.h"
 #include "vins_core/parameters.h"
 #include "vins_core/pose.h"
 
 namespace vins::estimator {
 
-/// How far the camera's pose in the body frame is known (estimate_extrinsic: 0, 1, 2).
-enum class ExtrinsicMode {
-  kTrusted,  ///< 0: as given
-  kRefined,  ///< 1: given as a first guess
-  kUnknown   ///< 2: to be found by moving
-};
+using camera_model::ExtrinsicMode;
 
 /// When only the newest frames are adjusted instead of the window (motion_only_ba: 0, 1, 2).
 enum class MotionOnly {
@@ -49,20 +45,9 @@ struct EstimatorOptions {
 
 std::ostream& operator<<(std::ostream& out, const EstimatorOptions& options);
 
-/// Reads the options from a rig's configuration file. The camera's pose is given by
-/// extrinsicRotation and extrinsicTranslation, which may be absent where estimate_extrinsic is 2,
-/// or by T_cam_imu (and td by timeshift_cam_imu) in a section cam0 as Kalibr's camchain has it.
-/// Throws InputError naming file, key, what was found and what is allowed.
-EstimatorOptions readEstimatorOptions(const Parameters& parameters);
-
-/// Reads acc_n, gyr_n, acc_w, gyr_w and g_norm. `imu_noise_unit` says what the four densities are:
-/// "density" (continuous time, as Kalibr's and data sheets), "sample" (VINS-Mono's: the deviation
-/// of one sample at `imu_rate`), or "auto" (default): sample where acc_n is above 0.03, which no
-/// usable sensor has as a density, as VINS-Mono's own files (0.08 and more) have it. VINS-Mono adds
-/// acc_n n to a sample and acc_w dt n to the bias in each step, with n a normal number: the
-/// densities are both divided by sqrt(imu_rate). Where acc_n is absent, Kalibr's keys are taken,
-/// always densities: accelerometer_noise_density, accelerometer_random_walk,
-/// gyroscope_noise_density, gyroscope_random_walk, at the top or in a section imu0.
-ImuNoise readImuNoise(const Parameters& parameters);
+/// Takes what describes the rig (IMU noise, extrinsic, time offset, read-out) from `rig`, of its
+/// first camera, and the estimator's own keys from the configuration file. Throws InputError naming
+/// file, key, what was found and what is allowed.
+EstimatorOptions readEstimatorOptions(const Parameters& parameters, const camera_model::Rig& rig);
 
 }  // namespace vins::estimator

@@ -3,6 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "camera_model/double_sphere.h"
+#include "camera_model/eucm.h"
 #include "camera_model/kannala_brandt.h"
 #include "camera_model/mei.h"
 #include "camera_model/pinhole_radtan.h"
@@ -17,7 +19,8 @@ inline CameraParameters parametersOf(std::initializer_list<double> values) {
 }
 
 /// A realistic camera of each model: EuRoC's cam0, TUM-VI's fisheye, a 180 degree omnidirectional
-/// camera with distortion, and an OCam lens that sees 20 degrees behind itself.
+/// camera with distortion, an OCam lens that sees 20 degrees behind itself, and wide lenses as a
+/// double sphere and as an extended unified camera.
 inline std::vector<std::shared_ptr<const Camera>> exampleCameras() {
   return {
       std::make_shared<PinholeRadtan>("pinhole", ImageSize{752, 480},
@@ -33,7 +36,11 @@ inline std::vector<std::shared_ptr<const Camera>> exampleCameras() {
           parametersOf({1.2, -0.12, 0.03, 0.0006, -0.0004, 380.0, 382.0, 318.0, 244.0})),
       std::make_shared<Scaramuzza>(
           "ocam", ImageSize{800, 800},
-          parametersOf({-280.0, 0.0, 1.1e-3, -4.0e-7, 1.9e-9, 1.0002, 0.0003, 0.0, 402.0, 397.0}))};
+          parametersOf({-280.0, 0.0, 1.1e-3, -4.0e-7, 1.9e-9, 1.0002, 0.0003, 0.0, 402.0, 397.0})),
+      std::make_shared<DoubleSphere>("double_sphere", ImageSize{512, 512},
+                                     parametersOf({-0.1725, 0.5933, 158.0, 157.9, 254.96, 256.89})),
+      std::make_shared<Eucm>("eucm", ImageSize{640, 480},
+                             parametersOf({0.63, 1.05, 260.0, 261.0, 318.0, 243.0}))};
 }
 
 }  // namespace vins::camera_model::testing
