@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "vins_core/input_error.h"
+
 namespace vins::camera_model {
 namespace {
 
@@ -63,20 +65,31 @@ Eigen::Vector4d centerAndFocalLengths(const Camera& camera) {
   return {center.x(), center.y(), jacobians.J_pixel_point(0, 0), jacobians.J_pixel_point(1, 1)};
 }
 
+/// The camera with parameter `index` moved by `*step`; by the negative of it, which `*step` then
+/// is, where the parameter is at a bound of its model.
+std::unique_ptr<Camera> withMovedParameter(const Camera& camera, int index, double* step) {
+  CameraParameters p = camera.parameters();
+  p[index] += *step;
+  try {
+    return camera.withParameters(p);
+  } catch (const InputError&) {
+    p[index] -= 2.0 * *step;
+    *step = -*step;
+    return camera.withParameters(p);
+  }
+}
+
 /// Standard deviations of centerAndFocalLengths(), by differences. The step is small against a
 /// deviation, because strongly correlated parameters (xi and gamma) must cancel in first order.
 Eigen::Vector4d centerAndFocalDeviations(const Calibration& calibration) {
   const CameraParameters p = calibration.camera->parameters();
   Eigen::Matrix<double, 4, Eigen::Dynamic> J(4, p.size());
   for (int i = 0; i < p.size(); ++i) {
-    const double step = 1e-4 * std::sqrt(calibration.covariance(i, i));
+    double step = 1e-4 * std::sqrt(calibration.covariance(i, i));
     J.col(i).setZero();
     if (step == 0.0) continue;
-    CameraParameters moved = p;
-    moved[i] += step;
-    J.col(i) = (centerAndFocalLengths(*calibration.camera->withParameters(moved)) -
-                centerAndFocalLengths(*calibration.camera)) /
-               step;
+    const auto moved = withMovedParameter(*calibration.camera, i, &step);
+    J.col(i) = (centerAndFocalLengths(*moved) - centerAndFocalLengths(*calibration.camera)) / step;
   }
   return (J * calibration.covariance * J.transpose()).diagonal().cwiseSqrt();
 }

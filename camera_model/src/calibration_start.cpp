@@ -43,13 +43,14 @@ std::unique_ptr<Camera> startingCamera(const CalibrationOptions& options, double
       p << -f, 0.0, 1.0 / (3.0 * f), 0.0, 1.0 / (45.0 * f * f * f), 1.0, 0.0, 0.0, u, v;
       return std::make_unique<Scaramuzza>(options.camera_name, size, p);
     case CameraModel::kDoubleSphere:
-      // Both as Mei's with xi = 1.
+      // Of wide lenses as they are: from xi = 0 some end at xi = 1, far from the best fit. On the
+      // axis n is (1 + xi) z, hence the focal length.
       p.setZero(6);
-      p << 0.0, 0.5, f, f, u, v;
+      p << -0.2, 0.6, 0.8 * f, 0.8 * f, u, v;
       return std::make_unique<DoubleSphere>(options.camera_name, size, p);
     case CameraModel::kEucm:
       p.setZero(6);
-      p << 0.5, 1.0, f, f, u, v;
+      p << 0.5, 1.0, f, f, u, v;  // as Mei's with xi = 1
       return std::make_unique<Eucm>(options.camera_name, size, p);
   }
   return nullptr;

@@ -149,17 +149,30 @@ TEST_P(SimulatedCalibration, IsExactWithoutNoise) {
   EXPECT_LT(largestDifference(truth, *calibration.camera, views), 1e-2);
 }
 
+/// The double sphere has a second pair of xi and alpha, far from the true one, that maps nearly
+/// alike: from 25 views it may fit as well (by a chi-square that is lower by 1.3 in one of six
+/// runs). The deviations describe the neighbourhood of one pair.
+bool isTheOtherDoubleSphere(const Camera& truth, const Camera& estimate) {
+  return truth.model() == CameraModel::kDoubleSphere &&
+         std::abs(estimate.parameters()[0] - truth.parameters()[0]) > 0.2;
+}
+
 TEST_P(SimulatedCalibration, DeviationsTellTheErrors) {
   // Normalized squared errors of the parameters over several runs: the mean is 1 for honest
   // deviations; the bounds are those of a chi-square of a dozen runs, widened for parameters that
   // are correlated.
   const Camera& truth = *GetParam();
   double sum = 0.0;
-  int count = 0;
+  int count = 0, runs = 0;
   for (std::uint64_t seed = 10; seed < 16; ++seed) {
     const auto views = BoardSimulator(truth, seed).views(25, kNoise);
     const Calibration calibration = calibrate(optionsFor(truth), views);
     ASSERT_GT(calibration.covariance.size(), 0);
+    if (isTheOtherDoubleSphere(truth, *calibration.camera)) {
+      EXPECT_LT(largestDifference(truth, *calibration.camera, views), 0.5);
+      continue;
+    }
+    ++runs;
     const CameraParameters error = calibration.camera->parameters() - truth.parameters();
     for (int i = 0; i < error.size(); ++i) {
       if (calibration.covariance(i, i) == 0.0) continue;
@@ -167,6 +180,7 @@ TEST_P(SimulatedCalibration, DeviationsTellTheErrors) {
       ++count;
     }
   }
+  EXPECT_GE(runs, 5);
   EXPECT_GT(sum / count, 0.3);
   EXPECT_LT(sum / count, 2.5);
 }

@@ -103,6 +103,31 @@ TEST_F(ConfigurationFiles, VinsMonosOwnFormRunsUnchanged) {
   EXPECT_TRUE(options.loops.saves_images);
 }
 
+/// A second reader would miss what the first one understands, as four did.
+TEST_F(ConfigurationFiles, NothingButTheReaderOfRigsAsksForARigsKeys) {
+  const std::vector<std::string> keys = {"imu_topic",         "image_topic", "estimate_extrinsic",
+                                         "extrinsicRotation", "body_T_cam0", "cam0_calib",
+                                         "timeshift_cam_imu", "rostopic"};
+  int files = 0;
+  for (const std::string package : {"vins_core", "vins_msgs", "camera_model", "feature_tracker",
+                                    "vins_estimator", "pose_graph", "vins_pipeline"}) {
+    for (const auto& entry : fs::recursive_directory_iterator("../" + package)) {
+      const std::string path = entry.path().string(), name = entry.path().filename().string();
+      const bool is_source = entry.path().extension() == ".cpp" || entry.path().extension() == ".h";
+      const bool is_reader = package == "camera_model" && name.rfind("rig", 0) == 0;
+      if (!is_source || is_reader || name == "rig_keys.cpp") continue;
+      if (path.find("/test/") != std::string::npos) continue;
+      ++files;
+      std::ifstream in(path);
+      const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+      for (const std::string& key : keys) {
+        EXPECT_EQ(text.find("\"" + key + "\""), std::string::npos) << path << " asks for " << key;
+      }
+    }
+  }
+  EXPECT_GT(files, 200);
+}
+
 TEST_F(ConfigurationFiles, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
   std::vector<std::string> warnings;
   std::ifstream in(kVinsMonoFile);

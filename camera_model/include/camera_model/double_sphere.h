@@ -11,7 +11,9 @@ namespace vins::camera_model {
 /// Double sphere camera: the point goes to a unit sphere, from there to a second one xi above the
 /// first, and through a pinhole that alpha places (V. Usenko, N. Demmel, D. Cremers, "The double
 /// sphere camera model", 3DV 2018, equations 40 to 53; Kalibr's ds-none, Basalt's ds).
-/// Parameters: xi from -1 to 1, alpha from 0 to 1 [-], fx, fy, cx, cy [px].
+/// Two pairs of xi and alpha, with their focal lengths, may map nearly alike: two calibrations of
+/// one camera may differ in them by far and in no pixel. Parameters: xi from -1 to 1, alpha from 0
+/// to 1 [-], fx, fy, cx, cy [px].
 class DoubleSphere : public UnifiedCamera {
  public:
   DoubleSphere(const std::string& name, ImageSize size, const CameraParameters& parameters);
