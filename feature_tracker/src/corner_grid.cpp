@@ -18,6 +18,11 @@ constexpr std::size_t kChoices = 4;      // corners of a cell that compete
 constexpr int kFewestCells = 4;          // that are searched where corners are missing at all
 constexpr int kRest = 3;                 // images in which a cell that gave nothing is not searched
 constexpr int kCellsPerCorner = 2;       // that are searched for each missing corner
+/// Share of the corners wanted, below which places where tracks were lost lately are taken, too.
+constexpr double kFew = 2.0 / 3.0;
+/// Score of a corner by the deviation of the noise, from which on noise seldom makes one. White
+/// noise has a score of 0.45 of its deviation in the mean, and tops of 0.7 in a cell.
+constexpr double kAboveNoise = 1.5;
 
 /// The smaller eigenvalue of [xx xy; xy yy].
 inline float smallerEigenvalue(float xx, float xy, float yy) {
@@ -81,7 +86,9 @@ float parabolaTop(float before, float at, float after) {
   return std::clamp(0.5F * (before - after) / curvature, -0.5F, 0.5F);
 }
 
-bool byScore(const Corner& a, const Corner& b) { return a.score > b.score; }
+bool byScore(const Corner& a, const Corner& b) {
+  return a.is_shunned == b.is_shunned ? a.score > b.score : b.is_shunned;
+}
 
 }  // namespace
 
@@ -123,7 +130,8 @@ CornerGrid::CornerGrid(camera_model::ImageSize size, const CornerGridOptions& op
     : size_(size),
       options_(options),
       mask_(std::move(mask)),
-      neighbourhood_(size, options.min_distance) {
+      neighbourhood_(size, options.min_distance),
+      shunned_(size, options.min_distance) {
   // The outermost pixels have no gradient to be trusted, whatever the border.
   options_.border = std::max(options_.border, kReach + 2);
   const double pixels = static_cast<double>(size.width) * size.height;
@@ -227,11 +235,11 @@ Corner CornerGrid::cornerAt(const cv::Rect& area, int row, int column) const {
           top};
 }
 
-void CornerGrid::searchCell(const cv::Mat& gradients, const cv::Rect& area,
+void CornerGrid::searchCell(const cv::Mat& gradients, const cv::Rect& area, float least_score,
                             std::vector<Corner>* corners) {
   const cv::Size scores = computeScores(gradients, area);
   found_in_cell_.clear();
-  const float least = static_cast<float>(options_.quality * options_.quality);
+  const float least = least_score * least_score;
   for (int row = 1; row + 1 < scores.height; ++row) {
     const float* above = squared_scores_[row - 1];
     const float* here = squared_scores_[row];
@@ -244,6 +252,11 @@ void CornerGrid::searchCell(const cv::Mat& gradients, const cv::Rect& area,
       if (is_top) found_in_cell_.push_back(cornerAt(area, row, i));
     }
   }
+  chooseInCell(corners);
+}
+
+void CornerGrid::chooseInCell(std::vector<Corner>* corners) {
+  for (Corner& corner : found_in_cell_) corner.is_shunned = !shunned_.isFree(corner.pixel);
   std::sort(found_in_cell_.begin(), found_in_cell_.end(), byScore);
   std::size_t chosen = 0;
   for (const Corner& corner : found_in_cell_) {
@@ -253,16 +266,32 @@ void CornerGrid::searchCell(const cv::Mat& gradients, const cv::Rect& area,
   }
 }
 
+/// The best of all cells, as many as are missing; shunned ones only in an image that has few.
+std::vector<Corner> CornerGrid::accept(std::vector<Corner> candidates, int occupied) {
+  std::stable_sort(candidates.begin(), candidates.end(), byScore);
+  std::vector<Corner> accepted;
+  for (const Corner& corner : candidates) {
+    const int corners = occupied + static_cast<int>(accepted.size());
+    if (corners >= options_.max_corners) break;
+    if (corner.is_shunned && corners >= kFew * options_.max_corners) break;
+    if (!neighbourhood_.isFree(corner.pixel)) continue;
+    neighbourhood_.add(corner.pixel);
+    accepted.push_back(corner);
+  }
+  return accepted;
+}
+
 std::vector<Corner> CornerGrid::detect(const cv::Mat& gradients,
                                        const std::vector<cv::Point2f>& occupied,
-                                       const std::vector<cv::Point2f>& shunned) {
-  std::vector<Corner> accepted;
+                                       const std::vector<cv::Point2f>& shunned, double noise) {
   const int missing = options_.max_corners - static_cast<int>(occupied.size());
-  if (missing <= 0) return accepted;
+  if (missing <= 0) return {};
   countCorners(occupied);
-  for (const cv::Point2f& pixel : shunned) neighbourhood_.add(pixel);
+  shunned_.clear();
+  for (const cv::Point2f& pixel : shunned) shunned_.add(pixel);
   const int margin = options_.border - 1;
   const cv::Rect searchable(margin, margin, size_.width - 2 * margin, size_.height - 2 * margin);
+  const auto least_score = static_cast<float>(std::min(options_.quality, kAboveNoise * noise));
   std::vector<Corner> candidates;
   for (const int cell : cellsToSearch(missing)) {
     // A score more on each side, so that those at the cell's own edges can be tops.
@@ -272,18 +301,11 @@ std::vector<Corner> CornerGrid::detect(const cv::Mat& gradients,
         searchable;
     const std::size_t before = candidates.size();
     if (area.width >= 3 * kBlock && area.height >= 3 * kBlock) {
-      searchCell(gradients, area, &candidates);
+      searchCell(gradients, area, least_score, &candidates);
     }
     if (candidates.size() == before) cells_[cell].rest = kRest;
   }
-  std::stable_sort(candidates.begin(), candidates.end(), byScore);
-  for (const Corner& corner : candidates) {
-    if (static_cast<int>(accepted.size()) == missing) break;
-    if (!neighbourhood_.isFree(corner.pixel)) continue;
-    neighbourhood_.add(corner.pixel);
-    accepted.push_back(corner);
-  }
-  return accepted;
+  return accept(std::move(candidates), static_cast<int>(occupied.size()));
 }
 
 }  // namespace vins::feature_tracker

@@ -9,6 +9,7 @@
 #include "feature_tracker/flow_prediction.h"
 #include "feature_tracker/frame_clock.h"
 #include "feature_tracker/image_equalizer.h"
+#include "feature_tracker/image_noise.h"
 #include "feature_tracker/optical_flow.h"
 #include "feature_tracker/outlier_rejection.h"
 #include "feature_tracker/stereo_matcher.h"
@@ -202,7 +203,7 @@ FeatureTrackerResult FeatureTracker::Impl::track(const std::vector<cv::Mat>& ima
   FeatureTrackerResult result;
   const std::uint32_t sequence = sequence_++;
   const bool admitted = admit(images, stamp, &result);
-  turn_.addSamples(imu);
+  if (options_.uses_gyroscope) turn_.addSamples(imu);
   if (!admitted) return result;
   takeImage(images.front(), &result.statistics);
   finishStage(TrackerStage::kPyramid);
@@ -310,8 +311,9 @@ void FeatureTracker::Impl::rejectWanderers() {
 void FeatureTracker::Impl::addCorners(TrackerStatistics* statistics) {
   table_.thinOut(kCrowded * options_.min_distance);
   table_.pixels(&pixels_);
-  statistics->detected =
-      table_.add(current_.image(), grid_.detect(current_.gradients(), pixels_, shunned_.pixels()));
+  const std::vector<Corner> corners = grid_.detect(current_.gradients(), pixels_, shunned_.pixels(),
+                                                   noiseDeviation(current_.image()));
+  statistics->detected = table_.add(current_.image(), corners);
   table_.remember(memory_.image());
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 // Mean squared gradient in the weakest direction below which a patch cannot be followed, in the
 // unit of cv::calcOpticalFlowPyrLK(): grey values are scaled there by 1 / 32.
-constexpr double kFlatPatch = 5e-4;
+constexpr double kFlatPatch = 5e-5;
 constexpr int kWayBackLevels = 0;
 constexpr float kDarkest = 8.0F;  // grey value below which a ratio says nothing
 

@@ -13,13 +13,14 @@ struct CornerGridOptions {
   int max_corners = 150;       ///< corners that an image may have in all
   double min_distance = 30.0;  ///< between any two of them [px]
   int border = 8;              ///< no corner is nearer to the image's edge [px]
-  double quality = 2.5;        ///< smallest score [grey values/px]
+  double quality = 2.5;        ///< smallest score in a noisy image [grey values/px]
 };
 
 /// A corner of one image.
 struct Corner {
   cv::Point2f pixel;   ///< sub-pixel: the top of a parabola through the scores about the best pixel
   float score = 0.0F;  ///< see CornerGrid
+  bool is_shunned = false;  ///< near a place where tracks were lost lately
 };
 
 /// Finds corners where an image lacks them. The image is divided into cells, about as many as
@@ -39,9 +40,15 @@ class CornerGrid {
   /// New corners, best first, of the image with these gradients: CV_16SC2 of Scharr's filter (32
   /// times the grey values per pixel), as cv::buildOpticalFlowPyramid() makes them. With `occupied`
   /// they are at most max_corners.
-  /// None is nearer than min_distance to a place in `shunned`, either.
+  /// Those nearer than min_distance to a place in `shunned`, where tracks were lost lately, come
+  /// last, and only while the image has less than two thirds of max_corners. `noise`: deviation of
+  /// the image's grey values. A score need not be `quality` where less stands out of the noise.
   std::vector<Corner> detect(const cv::Mat& gradients, const std::vector<cv::Point2f>& occupied,
-                             const std::vector<cv::Point2f>& shunned = {});
+                             const std::vector<cv::Point2f>& shunned = {},
+                             double noise = kUnknownNoise);
+
+  /// So much that only `quality` counts [grey values].
+  static constexpr double kUnknownNoise = 255.0;
 
   /// A corner may be at this pixel: neither masked nor too near to the edge.
   bool allows(const cv::Point2f& pixel) const;
@@ -72,7 +79,10 @@ class CornerGrid {
   void countCorners(const std::vector<cv::Point2f>& occupied);
   std::vector<int> cellsToSearch(int missing);
   cv::Size computeScores(const cv::Mat& gradients, const cv::Rect& area);
-  void searchCell(const cv::Mat& gradients, const cv::Rect& area, std::vector<Corner>* corners);
+  void searchCell(const cv::Mat& gradients, const cv::Rect& area, float least_score,
+                  std::vector<Corner>* corners);
+  void chooseInCell(std::vector<Corner>* corners);
+  std::vector<Corner> accept(std::vector<Corner> candidates, int occupied);
   Corner cornerAt(const cv::Rect& area, int row, int column) const;
 
   camera_model::ImageSize size_;
@@ -81,7 +91,7 @@ class CornerGrid {
   int columns_ = 1;
   std::vector<Cell> cells_;
   std::size_t next_cell_ = 0;
-  Neighbourhood neighbourhood_;
+  Neighbourhood neighbourhood_, shunned_;
   // Kept from call to call, so that nothing is allocated for an image.
   cv::Mat1i products_;  ///< xx, xy, yy for each row of blocks
   cv::Mat1i columns_sums_;
