@@ -246,10 +246,7 @@ class Estimator::Implementation {
     odometry.stamp = measurements.frame.stamp;
     odometry.state = window.frames.back().state.value();
     odometry.sequence = sequence_;
-    if (!measurements.imu.empty()) {
-      odometry.angular_velocity_b =
-          measurements.imu.back().angular_velocity - odometry.state.gyroscope_bias;
-    }
+    reportRate(measurements.imu, &odometry);
     odometry.covariance = window.frames.back().covariance;
     result->odometry = odometry;
     credible_ = odometry;
@@ -257,6 +254,20 @@ class Estimator::Implementation {
     for (const WindowFrame& frame : window.frames) {
       result->window.push_back({frame.stamp, frame.state.value()});
     }
+  }
+
+  /// The newest reading. Where it was interpolated at the frame's time, noise of its two neighbours
+  /// is averaged in it.
+  void reportRate(const std::vector<ImuSample>& samples, Odometry* odometry) const {
+    if (samples.empty()) return;
+    odometry->angular_velocity_b = samples.back().angular_velocity - odometry->state.gyroscope_bias;
+    const double period = queue_.imuPeriod();
+    const double last = samples.size() < 2
+                            ? period
+                            : toSeconds(samples.back().stamp - samples[samples.size() - 2].stamp);
+    const double share = std::min(1.0, last / period);
+    const double averaging = share * share + (1.0 - share) * (1.0 - share);
+    odometry->angular_velocity_variance = averaging * options_.imu.gyroscopeVariance(period);
   }
 
   EstimatorOptions options_;
