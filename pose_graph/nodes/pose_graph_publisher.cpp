@@ -49,7 +49,9 @@ void PoseGraphPublisher::publish(const LoopMatch& match) {
   match_.publish(message);
 }
 
-void PoseGraphPublisher::publish(nav_msgs::Odometry odometry, const Pose& T_map_odom) {
+void PoseGraphPublisher::publish(const nav_msgs::Odometry& odometry,
+                                 const MapFromOdom& map_from_odom) {
+  const Pose& T_map_odom = map_from_odom.pose;
   geometry_msgs::TransformStamped transform;
   transform.header.stamp = odometry.header.stamp;
   transform.header.frame_id = frames_.map;
@@ -58,9 +60,7 @@ void PoseGraphPublisher::publish(nav_msgs::Odometry odometry, const Pose& T_map_
   transform.transform.translation = vins_msgs::toMsg(T_map_odom.position);
   transform.transform.rotation = pose.orientation;
   transforms_.sendTransform(transform);
-  odometry.header.frame_id = frames_.map;
-  odometry.pose.pose = vins_msgs::toMsg(T_map_odom * vins_msgs::fromMsg(odometry.pose.pose));
-  odometry_.publish(odometry);
+  odometry_.publish(toMapOdometry(odometry, map_from_odom, frames_.map));
 }
 
 void PoseGraphPublisher::publishPaths(PoseGraph* graph, bool now) {

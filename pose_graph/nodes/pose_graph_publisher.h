@@ -8,6 +8,7 @@
 #include <ros/ros.h>
 #include <tf2_ros/transform_broadcaster.h>
 
+#include "pose_graph/graph/map_from_odom.h"
 #include "pose_graph/pose_graph.h"
 
 namespace vins::pose_graph {
@@ -35,7 +36,7 @@ class PoseGraphPublisher {
   void publish(const LoopMatch& match);
 
   /// The odometry moved into the map, and map -> odom.
-  void publish(nav_msgs::Odometry odometry, const Pose& T_map_odom);
+  void publish(const nav_msgs::Odometry& odometry, const MapFromOdom& map_from_odom);
 
   /// Paths and markers; at most twice a second unless `now`.
   void publishPaths(PoseGraph* graph, bool now);

@@ -71,7 +71,7 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
     ROS_WARN("loop_closure is 0: the map is the odometry's world");
     const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> pass =
         [this](const nav_msgs::Odometry::ConstPtr& message) {
-          publisher_.publish(*message, Pose());
+          publisher_.publish(*message, MapFromOdom());
         };
     subscribers_.push_back(
         node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, pass));
@@ -253,7 +253,7 @@ void PoseGraphRos::handle(const MapRequest& request) {
 }
 
 void PoseGraphRos::handle(const nav_msgs::Odometry& odometry) {
-  publisher_.publish(odometry, graph_->drift(sequence_).value_or(Pose()));
+  publisher_.publish(odometry, {graph_->drift(sequence_).value_or(Pose())});
 }
 
 void PoseGraphRos::hear(const std::vector<Event>& events) {

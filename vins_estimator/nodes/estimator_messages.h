@@ -9,15 +9,26 @@
 
 #include "vins_core/pose.h"
 #include "vins_estimator/estimator.h"
+#include "vins_estimator/inertial/propagator.h"
 
 namespace vins::estimator {
 
-/// A state as nav_msgs/Odometry: the pose in `odom`, the twist in `body`, as the message wants it.
-/// Its covariances are of position (world axes) and rotation (body axes), of velocity (body axes).
-nav_msgs::Odometry toOdometry(Stamp stamp, const NavState& state,
-                              const Eigen::Vector3d& angular_velocity_b,
-                              const Matrix15d& covariance, double gyroscope_noise,
-                              const std::string& odom, const std::string& body);
+/// Frame names of what is published.
+struct EstimatorFrames {
+  std::string odom = "odom";
+  std::string body = "body";
+  std::string camera = "camera";
+};
+
+/// A state as nav_msgs/Odometry: the pose in `odom`, with a covariance about the fixed axes of
+/// `odom`; the twist in `body`, with a covariance along the axes of `body`, as ROS defines them.
+nav_msgs::Odometry toOdometry(const Odometry& odometry, const EstimatorFrames& frames);
+nav_msgs::Odometry toOdometry(const PropagatedState& state, const EstimatorFrames& frames);
+
+/// The camera's pose in `body`, with a covariance about the fixed axes of `body`. `covariance` is
+/// of the rig's errors.
+nav_msgs::Odometry toExtrinsic(Stamp stamp, const RigCalibration& rig, const Matrix7d& covariance,
+                               const EstimatorFrames& frames);
 
 /// x, y, z clouds in single precision.
 sensor_msgs::PointCloud2 toCloud(const std::vector<LandmarkPoint>& points);

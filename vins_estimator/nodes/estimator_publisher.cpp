@@ -1,20 +1,17 @@
 #include "estimator_publisher.h"
 
-#include <algorithm>
-
 #include <boost/make_shared.hpp>
 #include <nav_msgs/Odometry.h>
 #include <std_msgs/Float64.h>
 #include <visualization_msgs/Marker.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include "estimator_messages.h"
 #include "vins_msgs/Event.h"
 #include "vins_msgs/ImuBias.h"
 #include "vins_msgs/Keyframe.h"
 #include "vins_msgs/KeyframePoseUpdate.h"
 #include "vins_msgs/LoopEdge.h"
-#include "vins_msgs/conversions.h"
+#include "vins_msgs/odometry.h"
 
 namespace vins::estimator {
 namespace {
@@ -64,14 +61,11 @@ void EstimatorPublisher::publish(const EstimatorResult& result) {
 }
 
 void EstimatorPublisher::publish(const PropagatedState& state) {
-  propagated_.publish(toOdometry(state.stamp, state.state, state.angular_velocity_b,
-                                 state.covariance, 0.0, frames_.odom, frames_.body));
+  propagated_.publish(toOdometry(state, frames_));
 }
 
 void EstimatorPublisher::publishOdometry(const Odometry& odometry) {
-  const auto message = boost::make_shared<nav_msgs::Odometry>(
-      toOdometry(odometry.stamp, odometry.state, odometry.angular_velocity_b, odometry.covariance,
-                 0.0, frames_.odom, frames_.body));
+  const auto message = boost::make_shared<nav_msgs::Odometry>(toOdometry(odometry, frames_));
   odometry_.publish(message);
   geometry_msgs::PoseStamped pose;
   pose.header = message->header;
@@ -86,11 +80,8 @@ void EstimatorPublisher::publishOdometry(const Odometry& odometry) {
 }
 
 void EstimatorPublisher::publishCamera(const EstimatorResult& result) {
-  nav_msgs::Odometry camera;
-  camera.header.stamp = vins_msgs::toRosTime(result.stamp);
-  camera.header.frame_id = frames_.odom;
-  camera.child_frame_id = frames_.camera;
-  camera.pose.pose = vins_msgs::toMsg(result.odometry->state.T_wb * result.rig.T_bc);
+  const nav_msgs::Odometry camera = vins_msgs::ofChildFrame(toOdometry(*result.odometry, frames_),
+                                                            frames_.camera, result.rig.T_bc);
   camera_.publish(camera);
   visualization_msgs::MarkerArray frustum;
   frustum.markers.push_back(cameraFrustum(0.4));
@@ -100,14 +91,7 @@ void EstimatorPublisher::publishCamera(const EstimatorResult& result) {
 }
 
 void EstimatorPublisher::publishRig(const EstimatorResult& result) {
-  nav_msgs::Odometry extrinsic;
-  extrinsic.header.stamp = vins_msgs::toRosTime(result.stamp);
-  extrinsic.header.frame_id = frames_.body;
-  extrinsic.child_frame_id = frames_.camera;
-  extrinsic.pose.pose = vins_msgs::toMsg(result.rig.T_bc);
-  const Eigen::Matrix<double, 6, 6> covariance = result.rig_covariance.topLeftCorner<6, 6>();
-  std::copy_n(covariance.data(), 36, extrinsic.pose.covariance.begin());
-  extrinsic_.publish(extrinsic);
+  extrinsic_.publish(toExtrinsic(result.stamp, result.rig, result.rig_covariance, frames_));
   std_msgs::Float64 td;
   td.data = result.rig.td;
   time_offset_.publish(td);

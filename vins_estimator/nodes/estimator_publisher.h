@@ -7,17 +7,9 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include "vins_estimator/estimator.h"
-#include "vins_estimator/inertial/propagator.h"
+#include "estimator_messages.h"
 
 namespace vins::estimator {
-
-/// Frame names of what is published.
-struct EstimatorFrames {
-  std::string odom = "odom";
-  std::string body = "body";
-  std::string camera = "camera";
-};
 
 /// Turns the estimator's results into messages. Topics live in the node's own namespace, under the
 /// names that VINS-Mono's users know.
