@@ -49,6 +49,7 @@ void EstimatorPublisher::clear() {
 void EstimatorPublisher::publish(const EstimatorResult& result) {
   for (const Event& event : result.events) events_.publish(vins_msgs::toMsg(event));
   if (!result.odometry) return;
+  publishKeyframes(result);  // first: the pose graph learns from them what sequence this is
   publishOdometry(*result.odometry);
   publishCamera(result);
   publishRig(result);
@@ -56,7 +57,6 @@ void EstimatorPublisher::publish(const EstimatorResult& result) {
   publishTransforms(result);
   publishWindow(result);
   publishClouds(result);
-  publishKeyframes(result);
   publishLoopEdges(result);
 }
 

@@ -99,6 +99,7 @@ class Estimator::Implementation {
     } else {
       track(*measurements, &result);
     }
+    for (Keyframe& keyframe : result.keyframes) keyframe.world = world_;
     result.status = status_;
     result.rig = tracker_.window().rig;
     if (tracker_.window().refines_rig) result.rig_covariance = tracker_.window().rig_covariance;
@@ -107,6 +108,7 @@ class Estimator::Implementation {
 
   /// As at the very first.
   void reset() {
+    if (credible_) ++world_;
     tracker_.forgetRig();
     startAnew();
     continuation_.clear();
@@ -281,6 +283,7 @@ class Estimator::Implementation {
   std::optional<Odometry> credible_;  ///< the last that was reported
   EstimatorStatus status_ = EstimatorStatus::kInitializing;
   std::uint32_t sequence_ = 0;
+  std::uint32_t world_ = 0;  ///< rises where nothing is carried over
   int backlog_ = 0;
   bool extrinsic_is_known_ = true;
 };

@@ -59,7 +59,8 @@ class Random {
             pose(),
             pose(),
             matrix<6>(),
-            {keyframePoint(), keyframePoint(), keyframePoint()}};
+            {keyframePoint(), keyframePoint(), keyframePoint()},
+            sequence()};
   }
   vins::KeyframePoseUpdate poseUpdate() { return {id(), sequence(), stamp(), pose()}; }
   vins::MatchedFeature matchedFeature() { return {id(), bearing()}; }
