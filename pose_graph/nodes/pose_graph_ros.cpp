@@ -206,6 +206,7 @@ void PoseGraphRos::handle(Keyframe keyframe) {
   }
   const PoseGraphResult result = graph_->addKeyframe(keyframe, image);
   sequence_ = keyframe.sequence;
+  for (const nav_msgs::Odometry& odometry : hold_.addKeyframe(keyframe)) correct(odometry);
   if (result.match && configuration_.options.refines_in_window) {
     LoopMatch match = *result.match;
     numbering_.giveBack(&match);
@@ -253,7 +254,11 @@ void PoseGraphRos::handle(const MapRequest& request) {
 }
 
 void PoseGraphRos::handle(const nav_msgs::Odometry& odometry) {
-  publisher_.publish(odometry, {graph_->drift(sequence_).value_or(Pose())});
+  for (const nav_msgs::Odometry& released : hold_.addOdometry(odometry)) correct(released);
+}
+
+void PoseGraphRos::correct(const nav_msgs::Odometry& odometry) {
+  publisher_.publish(odometry, graph_->locate(sequence_, vins_msgs::fromMsg(odometry.pose.pose)));
 }
 
 void PoseGraphRos::hear(const std::vector<Event>& events) {

@@ -17,6 +17,7 @@
 
 #include "keyframe_numbering.h"
 #include "map_services.h"
+#include "odometry_hold.h"
 #include "pose_graph/map/picture_store.h"
 #include "pose_graph/place/recent_images.h"
 #include "pose_graph/pose_graph.h"
@@ -62,6 +63,7 @@ class PoseGraphRos {
   void handle(LoopEdge edge);
   void handle(const nav_msgs::Odometry& odometry);
   void handle(const MapRequest& request);
+  void correct(const nav_msgs::Odometry& odometry);
   void stop();
   void loadFirstMap(const ros::NodeHandle& private_node);
   std::string saveMap(const std::string& file);
@@ -77,6 +79,7 @@ class PoseGraphRos {
   PoseGraphPublisher publisher_;
   PictureStore pictures_;
   KeyframeNumbering numbering_;  // the worker's alone
+  OdometryHold hold_;            // the worker's alone
   std::uint32_t sequence_ = 0;   // of the newest keyframe
   std::string save_at_end_;
 
