@@ -18,13 +18,6 @@ constexpr std::size_t kMaxWaiting = 400;   // several seconds of keyframes and o
 constexpr std::size_t kRecentImages = 60;  // three seconds at 20 Hz: the estimator may be behind
 constexpr std::size_t kRecentEvents = 5;
 
-PoseGraphFrames framesOf(const ros::NodeHandle& private_node) {
-  PoseGraphFrames frames;
-  private_node.param("map_frame", frames.map, frames.map);
-  private_node.param("odom_frame", frames.odom, frames.odom);
-  return frames;
-}
-
 std::unique_ptr<PoseGraph> makeGraph(const Parameters& parameters,
                                      const PoseGraphConfiguration& configuration) {
   const std::string shipped = ros::package::getPath("pose_graph") + "/support_files";
@@ -59,7 +52,7 @@ PoseGraphRos::PoseGraphRos(const ros::NodeHandle& node, const ros::NodeHandle& p
 PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
                            const Parameters& parameters)
     : configuration_(readPoseGraphConfiguration(parameters)),
-      publisher_(private_node, framesOf(private_node)),
+      publisher_(private_node),
       pictures_(static_cast<std::size_t>(configuration_.options.thinning.max_keyframes)),
       images_(kRecentImages),
       diagnostics_(node, private_node) {
@@ -74,7 +67,7 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
           publisher_.publish(*message, MapFromOdom());
         };
     subscribers_.push_back(
-        node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, pass));
+        node.subscribe<nav_msgs::Odometry>("vins_estimator/odometry", 200, pass));
     return;
   }
   image_topic_ = parameters.text("image_topic");
@@ -144,7 +137,7 @@ void PoseGraphRos::subscribe(ros::NodeHandle node) {
             ROS_ERROR_STREAM_THROTTLE(1.0, "dropped a message: " << error.what());
           }
         };
-    subscribers_.push_back(node.subscribe<Message>("/vins_estimator/" + topic, 200, callback));
+    subscribers_.push_back(node.subscribe<Message>("vins_estimator/" + topic, 200, callback));
   };
   take(vins_msgs::Keyframe(), "keyframe");
   take(vins_msgs::KeyframePoseUpdate(), "keyframe_pose_update");
@@ -152,7 +145,7 @@ void PoseGraphRos::subscribe(ros::NodeHandle node) {
   const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> take_odometry =
       [this](const nav_msgs::Odometry::ConstPtr& message) { push(*message); };
   subscribers_.push_back(
-      node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, take_odometry));
+      node.subscribe<nav_msgs::Odometry>("vins_estimator/odometry", 200, take_odometry));
 }
 
 void PoseGraphRos::onImage(const sensor_msgs::Image::ConstPtr& message) {

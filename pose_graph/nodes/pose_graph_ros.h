@@ -31,7 +31,7 @@ namespace vins::pose_graph {
 /// The pose graph's ROS face, shared by node and nodelet. Callbacks only queue; one worker
 /// describes and compares, and the optimization has a thread of its own.
 ///
-/// Private parameters: `config_file` (the rig's YAML; needed), `map_frame`, `odom_frame`;
+/// Private parameters: `config_file` (the rig's YAML; needed), those of PoseGraphPublisher;
 /// `load_map` (a map file to begin with; otherwise the one of pose_graph_save_path, where the YAML
 /// has load_previous_pose_graph) and `save_map` (where finish() writes the map); `image_transport`
 /// is raw. Subscribes the file's image_topic and the estimator's `keyframe`,

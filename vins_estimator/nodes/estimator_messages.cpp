@@ -22,7 +22,8 @@ geometry_msgs::Point toPoint(double x, double y, double z) {
 
 /// Of an Odometry or a PropagatedState, which have the same parts.
 template <typename State>
-nav_msgs::Odometry toOdometry(Stamp stamp, const State& state, const EstimatorFrames& frames) {
+nav_msgs::Odometry toOdometry(Stamp stamp, const State& state,
+                              const vins_msgs::FrameNames& frames) {
   const BodyTwist twist = bodyTwist(state.state, state.covariance, state.angular_velocity_b,
                                     state.angular_velocity_variance);
   nav_msgs::Odometry message;
@@ -37,16 +38,16 @@ nav_msgs::Odometry toOdometry(Stamp stamp, const State& state, const EstimatorFr
 
 }  // namespace
 
-nav_msgs::Odometry toOdometry(const Odometry& odometry, const EstimatorFrames& frames) {
+nav_msgs::Odometry toOdometry(const Odometry& odometry, const vins_msgs::FrameNames& frames) {
   return toOdometry(odometry.stamp, odometry, frames);
 }
 
-nav_msgs::Odometry toOdometry(const PropagatedState& state, const EstimatorFrames& frames) {
+nav_msgs::Odometry toOdometry(const PropagatedState& state, const vins_msgs::FrameNames& frames) {
   return toOdometry(state.stamp, state, frames);
 }
 
 nav_msgs::Odometry toExtrinsic(Stamp stamp, const RigCalibration& rig, const Matrix7d& covariance,
-                               const EstimatorFrames& frames) {
+                               const vins_msgs::FrameNames& frames) {
   nav_msgs::Odometry message;
   message.header.stamp = vins_msgs::toRosTime(stamp);
   message.header.frame_id = frames.body;

@@ -1,6 +1,7 @@
 #include "estimator_publisher.h"
 
 #include <boost/make_shared.hpp>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <std_msgs/Float64.h>
 #include <visualization_msgs/Marker.h>
@@ -16,14 +17,20 @@
 namespace vins::estimator {
 namespace {
 
+using vins_msgs::toTransform;
+
 constexpr std::size_t kMaxPathPoses = 20000;  // 16 minutes at 20 Hz
 constexpr std::size_t kMaxHistoryPoints = 100000;
 
 }  // namespace
 
-EstimatorPublisher::EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames)
-    : frames_(frames) {
+EstimatorPublisher::EstimatorPublisher(ros::NodeHandle node)
+    : frames_(vins_msgs::readFrameNames(node)),
+      publishes_tf_(vins_msgs::readSwitch(node, "publish_tf", true)),
+      tf_at_imu_rate_(vins_msgs::readSwitch(node, "tf_at_imu_rate", false)),
+      base_(frames_) {
   odometry_ = node.advertise<nav_msgs::Odometry>("odometry", 100);
+  pose_ = node.advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", 100);
   propagated_ = node.advertise<nav_msgs::Odometry>("imu_propagate", 1000);
   path_topic_ = node.advertise<nav_msgs::Path>("path", 10);
   cloud_ = node.advertise<sensor_msgs::PointCloud2>("point_cloud", 10);
@@ -54,23 +61,41 @@ void EstimatorPublisher::publish(const EstimatorResult& result) {
   publishCamera(result);
   publishRig(result);
   publishBias(*result.odometry);
-  publishTransforms(result);
+  publishCameraTransform(result);
   publishWindow(result);
   publishClouds(result);
   publishLoopEdges(result);
 }
 
 void EstimatorPublisher::publish(const PropagatedState& state) {
-  propagated_.publish(toOdometry(state, frames_));
+  const std::optional<nav_msgs::Odometry> message = base_.toBase(toOdometry(state, frames_));
+  if (!message) return;
+  propagated_.publish(*message);
+  if (publishes_tf_ && tf_at_imu_rate_) transforms_.sendTransform(toTransform(*message));
 }
 
 void EstimatorPublisher::publishOdometry(const Odometry& odometry) {
-  const auto message = boost::make_shared<nav_msgs::Odometry>(toOdometry(odometry, frames_));
-  odometry_.publish(message);
+  const std::optional<nav_msgs::Odometry> message = base_.toBase(toOdometry(odometry, frames_));
+  if (!message) return;
+  odometry_.publish(boost::make_shared<nav_msgs::Odometry>(*message));
+  publishPose(*message);
+  addToPath(*message);
+  if (publishes_tf_ && !tf_at_imu_rate_) transforms_.sendTransform(toTransform(*message));
+}
+
+void EstimatorPublisher::publishPose(const nav_msgs::Odometry& odometry) {
+  if (pose_.getNumSubscribers() == 0) return;
+  geometry_msgs::PoseWithCovarianceStamped pose;
+  pose.header = odometry.header;
+  pose.pose = odometry.pose;
+  pose_.publish(pose);
+}
+
+void EstimatorPublisher::addToPath(const nav_msgs::Odometry& odometry) {
   geometry_msgs::PoseStamped pose;
-  pose.header = message->header;
-  pose.pose = message->pose.pose;
-  path_.header.stamp = message->header.stamp;
+  pose.header = odometry.header;
+  pose.pose = odometry.pose.pose;
+  path_.header.stamp = odometry.header.stamp;
   path_.poses.push_back(pose);
   // Half goes at once, so that the cost is small on average.
   if (path_.poses.size() > kMaxPathPoses) {
@@ -109,19 +134,10 @@ void EstimatorPublisher::publishBias(const Odometry& odometry) {
   bias_.publish(message);
 }
 
-void EstimatorPublisher::publishTransforms(const EstimatorResult& result) {
-  const auto transform = [&](const std::string& parent, const std::string& child,
-                             const Pose& pose) {
-    geometry_msgs::TransformStamped message;
-    message.header.stamp = vins_msgs::toRosTime(result.stamp);
-    message.header.frame_id = parent;
-    message.child_frame_id = child;
-    message.transform.translation = vins_msgs::toMsg(pose.position);
-    message.transform.rotation = vins_msgs::toMsg(pose).orientation;
-    return message;
-  };
-  transforms_.sendTransform({transform(frames_.odom, frames_.body, result.odometry->state.T_wb),
-                             transform(frames_.body, frames_.camera, result.rig.T_bc)});
+void EstimatorPublisher::publishCameraTransform(const EstimatorResult& result) {
+  if (!publishes_tf_ || frames_.camera.empty()) return;
+  transforms_.sendTransform(
+      toTransform(toExtrinsic(result.stamp, result.rig, result.rig_covariance, frames_)));
 }
 
 void EstimatorPublisher::publishWindow(const EstimatorResult& result) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <Eigen/Core>
+#include <geometry_msgs/TransformStamped.h>
 #include <nav_msgs/Odometry.h>
 
 #include "vins_core/pose.h"
@@ -44,6 +45,18 @@ inline geometry_msgs::TwistWithCovariance toMsg(const Eigen::Vector3d& linear,
   message.twist.linear = toMsg(linear);
   message.twist.angular = toMsg(angular);
   copyTo(covariance, message.covariance);
+  return message;
+}
+
+/// The pose of a message as tf has it: frame_id -> child_frame_id.
+inline geometry_msgs::TransformStamped toTransform(const nav_msgs::Odometry& odometry) {
+  geometry_msgs::TransformStamped message;
+  message.header = odometry.header;
+  message.child_frame_id = odometry.child_frame_id;
+  message.transform.translation.x = odometry.pose.pose.position.x;
+  message.transform.translation.y = odometry.pose.pose.position.y;
+  message.transform.translation.z = odometry.pose.pose.position.z;
+  message.transform.rotation = odometry.pose.pose.orientation;
   return message;
 }
 
