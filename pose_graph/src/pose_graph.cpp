@@ -287,7 +287,7 @@ std::optional<Pose> PoseGraph::drift(SequenceNumber sequence) {
 }
 
 MapFromOdom PoseGraph::locate(SequenceNumber sequence, const Pose& T_wb) {
-  if (located_sequence_ != sequence) placeNewWorld(sequence, T_wb);
+  if (located_sequence_ && sequence > *located_sequence_) placeNewWorld(sequence, T_wb);
   const std::optional<MapFromOdom> map_from_odom =
       graph_.use([&](const KeyframeGraph& graph) { return graph.mapFromOdom(sequence); });
   if (!map_from_odom) return {};
@@ -297,14 +297,13 @@ MapFromOdom PoseGraph::locate(SequenceNumber sequence, const Pose& T_wb) {
 }
 
 void PoseGraph::placeNewWorld(SequenceNumber sequence, const Pose& T_wb) {
-  if (!last_T_mb_) return;
   // Between two recordings, or while the estimator was not there.
   constexpr double kUnknownPosition = 10.0;  // deviation per axis [m]
   constexpr double kUnknownYaw = 1.8;        // that of an angle of which nothing is known [rad]
   se3::Matrix6d of_body = se3::Matrix6d::Zero();
   of_body.diagonal().head<3>().setConstant(kUnknownPosition * kUnknownPosition);
   of_body(5, 5) = kUnknownYaw * kUnknownYaw;
-  const Pose T_mw = driftOf(*last_T_mb_, T_wb);
+  const Pose T_mw = driftOf(last_T_mb_, T_wb);
   const se3::Matrix6d covariance = covarianceByPoint(T_mw.rotation * T_wb.position, of_body);
   graph_.use([&](KeyframeGraph& graph) {
     if (graph.beginsWorld(sequence)) graph.placeSequence(sequence, {T_mw, covariance});

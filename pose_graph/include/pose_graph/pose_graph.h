@@ -167,7 +167,7 @@ class PoseGraph {
   PoseGraphStatistics counts_;
   std::optional<SequenceNumber> newest_sequence_;
   std::optional<SequenceNumber> located_sequence_;  ///< of the newest odometry
-  std::optional<Pose> last_T_mb_;                   ///< of the newest odometry, in the map
+  Pose last_T_mb_;                                  ///< of the newest odometry, in the map
   int left_to_skip_ = 0;
   bool waits_for_refinement_ = false;     ///< a found loop is in the graph and not optimized yet
   std::optional<Stamp> last_gate_event_;  ///< [ns]
