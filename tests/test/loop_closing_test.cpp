@@ -162,6 +162,36 @@ TEST_F(LoopClosing, ASecondRunFindsItselfInTheMapOfTheFirst) {
   EXPECT_LT(errorOf("joined", "joined"), 0.1) << "[m]";
 }
 
+TEST_F(LoopClosing, TheMapsPoseGoesOnOverAResetOfTheEstimator) {
+  // In the second round, after loops, the IMU is silent for longer than can be integrated over.
+  ASSERT_EQ(run("vins_tests/simulate_bag",
+                "-o " + (folder() / "gap.bag").string() +
+                    " --trajectory hall_loop --duration 40 --rate 10 --imu-gap 31:0.7 --camera " +
+                    (folder() / "camera.yaml").string()),
+            0);
+  ASSERT_EQ(run("vins_pipeline/run_bag", (folder() / "hall_rig.yaml").string() + " " +
+                                             (folder() / "gap.bag").string() + " --out " +
+                                             (folder() / "gap").string()),
+            0)
+      << textOf(folder() / "log.txt");
+  ASSERT_NE(textOf(folder() / "gap/events.csv").find(",reset,"), std::string::npos);
+  const Trajectory vio = readTrajectoryFile((folder() / "gap/vio_live.txt").string());
+  const Trajectory map = readTrajectoryFile((folder() / "gap/loop_live.txt").string());
+  ASSERT_EQ(vio.poses().size(), map.poses().size());
+  std::size_t after = 1;  // the first pose after the longest pause
+  const auto pause = [&](std::size_t i) { return vio.poses()[i].stamp - vio.poses()[i - 1].stamp; };
+  for (std::size_t i = 1; i < vio.poses().size(); ++i) after = pause(i) > pause(after) ? i : after;
+  ASSERT_GT(toSeconds(pause(after)), 0.7) << "the reset's";
+  const auto correction = [&](std::size_t i) {
+    return map.poses()[i].T_wb * vio.poses()[i].T_wb.inverse();
+  };
+  const Pose before = correction(after - 1), begun = correction(after);
+  RecordProperty("correction_mm", static_cast<int>(1e3 * before.position.norm()));
+  EXPECT_GT(before.position.norm(), 0.003) << "loops have corrected something [m]";
+  // No loop has joined the new sequence in its very first frame: the correction is the last one's.
+  EXPECT_LT((begun.position - before.position).norm(), 0.1 * before.position.norm());
+}
+
 TEST_F(LoopClosing, MapsThatCannotBeReadAreTold) {
   EXPECT_NE(runBag("no_map", "--load-map /no/such.map"), 0);
   EXPECT_NE(textOf(folder() / "log.txt").find("/no/such.map: is no map file"), std::string::npos);
