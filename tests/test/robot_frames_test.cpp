@@ -28,7 +28,7 @@ namespace {
 constexpr double kFlight = 8.0;  // the estimator is initialised after three to four of them [s]
 constexpr Stamp kEpoch = 1600000000000000000;
 
-/// base_link <- imu_link, as robot_frames_test.test has it.
+/// base_link <- imu_link, as a URDF has it: the IMU stands on the robot, its x axis up.
 const Pose kBaseFromImu(Eigen::Quaterniond(std::sqrt(0.5), 0.0, -std::sqrt(0.5), 0.0),
                         {0.2, 0.1, 0.3});
 
@@ -44,6 +44,7 @@ bool waitFor(const std::function<bool()>& condition, double seconds = 60.0) {
 class RobotFrames : public ::testing::Test {
  protected:
   void SetUp() override {
+    publishRobot();
     imu_ = handle_.advertise<sensor_msgs::Imu>("/imu0", 5000);
     features_ = handle_.advertise<vins_msgs::FeatureFrame>("/feature_tracker/feature", 500);
     hear<nav_msgs::Odometry>("/vins_estimator/odometry", &odometry_);
@@ -60,6 +61,17 @@ class RobotFrames : public ::testing::Test {
     ASSERT_TRUE(waitFor(
         [this] { return imu_.getNumSubscribers() == 2 && features_.getNumSubscribers() == 2; }));
     ros::WallDuration(1.0).sleep();  // the nodes are told of their subscribers, and of /tf_static
+  }
+
+  void publishRobot() {
+    nav_msgs::Odometry imu_on_robot;
+    imu_on_robot.header.frame_id = "base_link";
+    imu_on_robot.child_frame_id = "imu_link";
+    imu_on_robot.pose.pose = vins_msgs::toMsg(kBaseFromImu);
+    tf2_msgs::TFMessage transforms;
+    transforms.transforms.push_back(vins_msgs::toTransform(imu_on_robot));
+    robot_ = handle_.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
+    robot_.publish(transforms);
   }
 
   template <typename Message>
@@ -92,7 +104,7 @@ class RobotFrames : public ::testing::Test {
   }
 
   ros::NodeHandle handle_;
-  ros::Publisher imu_, features_;
+  ros::Publisher robot_, imu_, features_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<nav_msgs::Odometry> odometry_, propagated_, camera_, without_tf_;
   std::vector<geometry_msgs::PoseWithCovarianceStamped> pose_;
