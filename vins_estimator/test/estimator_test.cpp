@@ -185,6 +185,22 @@ TEST(Estimator, ARecordingStartedAgainIsANewWorld) {
   EXPECT_EQ(worldsOf(results, 1), std::set<std::uint32_t>{1});
 }
 
+TEST(Estimator, TheRateHasTheNoiseOfTheReadingsInIt) {
+  const SyntheticFlight flight = longFlight();
+  EstimatorOptions options = optionsFor(flight);
+  const double reading = options.imu.gyroscopeVariance(0.005);
+  Follower follower(flight, options);
+  const auto results = follower.fly(1.0, 6.0);
+  ASSERT_NE(lastOf(results, 0), nullptr);
+  EXPECT_NEAR(lastOf(results, 0)->angular_velocity_variance, reading, 1e-6 * reading);
+  // Halfway between two readings it is their mean.
+  options.td = 0.0025;
+  Follower between(flight, options);
+  const auto averaged = between.fly(1.0, 6.0);
+  ASSERT_NE(lastOf(averaged, 0), nullptr);
+  EXPECT_NEAR(lastOf(averaged, 0)->angular_velocity_variance, 0.5 * reading, 1e-6 * reading);
+}
+
 TEST(Estimator, ReportsTheRigAsConfiguredWhereItIsTrusted) {
   const SyntheticFlight flight = longFlight();
   Follower follower(flight, optionsFor(flight));
