@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <sstream>
 #include <string>
 
 #include <ros/ros.h>
@@ -24,15 +25,16 @@ struct FrameNames {
   /// The child frame of the odometry.
   const std::string& child() const { return hasBase() ? base : body; }
 
-  /// Throws InputError naming the first name that is empty where it must not be, begins with a
-  /// slash, which tf2 does not allow, or is another frame's.
+  /// `node`: its private namespace, for messages. Throws InputError naming the first name that is
+  /// empty where it must not be, begins with a slash, which tf2 does not allow, or is another
+  /// frame's.
   void validate(const std::string& node) const {
     std::map<std::string, std::string> seen;
     const auto check = [&](const std::string& key, const std::string& name, bool may_be_empty) {
-      const std::string found = node + ": parameter " + key + " is '" + name + "'; allowed: ";
+      const std::string found = "parameter " + node + "/" + key + " is '" + name + "'; allowed: ";
       if (name.empty() && may_be_empty) return;
       if (name.empty() || name.front() == '/') {
-        throw vins::InputError(found + "a frame's name without a slash at its begin");
+        throw vins::InputError(found + "a frame's name that does not begin with a slash");
       }
       const auto [other, is_new] = seen.emplace(name, key);
       if (!is_new) throw vins::InputError(found + "another name than that of " + other->second);
@@ -68,7 +70,9 @@ inline bool readSwitch(const ros::NodeHandle& private_node, const std::string& k
   const bool is_number = value.getType() == XmlRpc::XmlRpcValue::TypeInt;
   const int number = is_number ? static_cast<int>(value) : -1;
   if (number == 0 || number == 1) return number == 1;
-  throw vins::InputError("parameter " + private_node.resolveName(key) + " is '" + value.toXml() +
+  std::ostringstream found;
+  value.write(found);
+  throw vins::InputError("parameter " + private_node.resolveName(key) + " is '" + found.str() +
                          "'; allowed: 0 or 1");
 }
 
