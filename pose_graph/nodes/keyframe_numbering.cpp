@@ -7,10 +7,12 @@ bool KeyframeNumbering::take(Keyframe* keyframe) {
   if (is_new_run) {
     ids_.startAgain();
     sequences_.startAgain();
+    worlds_.startAgain();
   }
   last_id_ = keyframe->id;
   keyframe->id = ids_.continued(keyframe->id);
   keyframe->sequence = static_cast<std::uint32_t>(sequences_.continued(keyframe->sequence));
+  keyframe->world = static_cast<std::uint32_t>(worlds_.continued(keyframe->world));
   return is_new_run;
 }
 

@@ -9,8 +9,9 @@
 
 namespace vins::pose_graph {
 
-/// Keyframes of an estimator that may have been started again: it counts keyframes and sequences
-/// from 0 anew, which in the graph are others. Old ids of loops are the graph's own everywhere.
+/// Keyframes of an estimator that may have been started again: it counts keyframes, sequences and
+/// worlds from 0 anew, which in the graph are others. Old ids of loops are the graph's own
+/// everywhere.
 class KeyframeNumbering {
  public:
   /// Numbers a keyframe as the graph shall know it. True where the estimator has been started
@@ -27,6 +28,7 @@ class KeyframeNumbering {
   std::optional<std::int64_t> last_id_;  ///< as the estimator has given it
   ContinuedIds ids_;
   ContinuedIds sequences_;
+  ContinuedIds worlds_;
 };
 
 }  // namespace vins::pose_graph

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "vins_msgs/conversions.h"
+#include "vins_msgs/odometry.h"
 
 namespace vins::pose_graph {
 namespace {
@@ -41,6 +41,12 @@ visualization_msgs::Marker line(const std::string& name, int id, int type,
 }
 
 }  // namespace
+
+nav_msgs::Odometry toMapOdometry(const nav_msgs::Odometry& odometry,
+                                 const MapFromOdom& map_from_odom, const std::string& map_frame) {
+  return vins_msgs::inParentFrame(odometry, map_frame, map_from_odom.pose,
+                                  map_from_odom.covariance);
+}
 
 nav_msgs::Path toPath(const SequencePath& path, const std::string& map_frame) {
   return pathOf(path, &KeyframeVertex::T_mb, map_frame);

@@ -9,7 +9,7 @@
 #include "pose_graph_messages.h"
 #include "vins_msgs/Event.h"
 #include "vins_msgs/LoopMatch.h"
-#include "vins_msgs/conversions.h"
+#include "vins_msgs/odometry.h"
 
 namespace vins::pose_graph {
 namespace {
@@ -26,8 +26,10 @@ bool isOfThisRun(const SequencePath& path) { return path.sequence >= 0; }
 
 }  // namespace
 
-PoseGraphPublisher::PoseGraphPublisher(const ros::NodeHandle& node, const PoseGraphFrames& frames)
-    : node_(node), frames_(frames) {
+PoseGraphPublisher::PoseGraphPublisher(const ros::NodeHandle& node)
+    : node_(node),
+      frames_(vins_msgs::readFrameNames(node)),
+      publishes_tf_(vins_msgs::readSwitch(node, "publish_tf", true)) {
   match_ = node_.advertise<vins_msgs::LoopMatch>("loop_match", 100);
   path_ = node_.advertise<nav_msgs::Path>("pose_graph_path", 10);
   no_loop_path_ = node_.advertise<nav_msgs::Path>("no_loop_path", 10);
@@ -49,18 +51,17 @@ void PoseGraphPublisher::publish(const LoopMatch& match) {
   match_.publish(message);
 }
 
-void PoseGraphPublisher::publish(nav_msgs::Odometry odometry, const Pose& T_map_odom) {
-  geometry_msgs::TransformStamped transform;
-  transform.header.stamp = odometry.header.stamp;
-  transform.header.frame_id = frames_.map;
-  transform.child_frame_id = frames_.odom;
-  const geometry_msgs::Pose pose = vins_msgs::toMsg(T_map_odom);
-  transform.transform.translation = vins_msgs::toMsg(T_map_odom.position);
-  transform.transform.rotation = pose.orientation;
-  transforms_.sendTransform(transform);
-  odometry.header.frame_id = frames_.map;
-  odometry.pose.pose = vins_msgs::toMsg(T_map_odom * vins_msgs::fromMsg(odometry.pose.pose));
-  odometry_.publish(odometry);
+void PoseGraphPublisher::publish(const nav_msgs::Odometry& odometry,
+                                 const MapFromOdom& map_from_odom) {
+  if (publishes_tf_) {
+    nav_msgs::Odometry map_from_odom_message;
+    map_from_odom_message.header.stamp = odometry.header.stamp;
+    map_from_odom_message.header.frame_id = frames_.map;
+    map_from_odom_message.child_frame_id = frames_.odom;
+    map_from_odom_message.pose.pose = vins_msgs::toMsg(map_from_odom.pose);
+    transforms_.sendTransform(vins_msgs::toTransform(map_from_odom_message));
+  }
+  odometry_.publish(toMapOdometry(odometry, map_from_odom, frames_.map));
 }
 
 void PoseGraphPublisher::publishPaths(PoseGraph* graph, bool now) {

@@ -8,15 +8,11 @@
 #include <ros/ros.h>
 #include <tf2_ros/transform_broadcaster.h>
 
+#include "pose_graph/graph/map_from_odom.h"
 #include "pose_graph/pose_graph.h"
+#include "vins_msgs/frame_names.h"
 
 namespace vins::pose_graph {
-
-/// Frame names of what is published.
-struct PoseGraphFrames {
-  std::string map = "map";
-  std::string odom = "odom";
-};
 
 /// Turns the pose graph's results into messages. Topics live in the node's own namespace, under the
 /// names that VINS-Mono's users know:
@@ -29,13 +25,15 @@ struct PoseGraphFrames {
 /// Paths and pictures are made only where somebody subscribes.
 class PoseGraphPublisher {
  public:
-  PoseGraphPublisher(const ros::NodeHandle& node, const PoseGraphFrames& frames);
+  /// Reads the frames' names (FrameNames) and the switch `publish_tf` (1) from the node's
+  /// parameters. Throws InputError for values that are not allowed.
+  explicit PoseGraphPublisher(const ros::NodeHandle& node);
 
   void publish(const std::vector<Event>& events);
   void publish(const LoopMatch& match);
 
-  /// The odometry moved into the map, and map -> odom.
-  void publish(nav_msgs::Odometry odometry, const Pose& T_map_odom);
+  /// The odometry moved into the map, and map -> odom in tf.
+  void publish(const nav_msgs::Odometry& odometry, const MapFromOdom& map_from_odom);
 
   /// Paths and markers; at most twice a second unless `now`.
   void publishPaths(PoseGraph* graph, bool now);
@@ -48,7 +46,8 @@ class PoseGraphPublisher {
   void publishSequences(const std::vector<SequencePath>& paths);
 
   ros::NodeHandle node_;
-  PoseGraphFrames frames_;
+  vins_msgs::FrameNames frames_;
+  bool publishes_tf_;
   ros::Publisher match_, path_, no_loop_path_, base_path_, markers_, picture_, odometry_, events_;
   std::map<SequenceNumber, ros::Publisher> sequences_;
   ros::WallTime last_paths_;

@@ -16,13 +16,6 @@ constexpr std::size_t kMaxWaiting = 400;  // several seconds of keyframes and od
 constexpr double kRecentImages = 3.0;     // the estimator may be behind [s]
 constexpr std::size_t kRecentEvents = 5;
 
-PoseGraphFrames framesOf(const ros::NodeHandle& private_node) {
-  PoseGraphFrames frames;
-  private_node.param("map_frame", frames.map, frames.map);
-  private_node.param("odom_frame", frames.odom, frames.odom);
-  return frames;
-}
-
 std::unique_ptr<PoseGraph> makeGraph(const camera_model::Rig& rig,
                                      const PoseGraphConfiguration& configuration) {
   const std::string shipped = ros::package::getPath("pose_graph") + "/support_files";
@@ -57,7 +50,7 @@ PoseGraphRos::PoseGraphRos(const ros::NodeHandle& node, const ros::NodeHandle& p
 PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
                            const vins_msgs::NodeConfiguration& configuration)
     : configuration_(readPoseGraphConfiguration(configuration.parameters)),
-      publisher_(private_node, framesOf(private_node)),
+      publisher_(private_node),
       pictures_(static_cast<std::size_t>(configuration_.options.thinning.max_keyframes)),
       images_(kRecentImages),
       diagnostics_(node, private_node) {
@@ -69,10 +62,10 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
     ROS_WARN("loop_closure is 0: the map is the odometry's world");
     const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> pass =
         [this](const nav_msgs::Odometry::ConstPtr& message) {
-          publisher_.publish(*message, Pose());
+          publisher_.publish(*message, MapFromOdom());
         };
     subscribers_.push_back(
-        node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, pass));
+        node.subscribe<nav_msgs::Odometry>("vins_estimator/odometry", 200, pass));
     return;
   }
   camera_model::requireImageTopic(configuration.parameters, configuration.rig);
@@ -143,7 +136,7 @@ void PoseGraphRos::subscribe(ros::NodeHandle node) {
             ROS_ERROR_STREAM_THROTTLE(1.0, "dropped a message: " << error.what());
           }
         };
-    subscribers_.push_back(node.subscribe<Message>("/vins_estimator/" + topic, 200, callback));
+    subscribers_.push_back(node.subscribe<Message>("vins_estimator/" + topic, 200, callback));
   };
   take(vins_msgs::Keyframe(), "keyframe");
   take(vins_msgs::KeyframePoseUpdate(), "keyframe_pose_update");
@@ -151,7 +144,7 @@ void PoseGraphRos::subscribe(ros::NodeHandle node) {
   const boost::function<void(const nav_msgs::Odometry::ConstPtr&)> take_odometry =
       [this](const nav_msgs::Odometry::ConstPtr& message) { push(*message); };
   subscribers_.push_back(
-      node.subscribe<nav_msgs::Odometry>("/vins_estimator/odometry", 200, take_odometry));
+      node.subscribe<nav_msgs::Odometry>("vins_estimator/odometry", 200, take_odometry));
 }
 
 void PoseGraphRos::onImage(const sensor_msgs::Image::ConstPtr& message) {
@@ -205,6 +198,7 @@ void PoseGraphRos::handle(Keyframe keyframe) {
   }
   const PoseGraphResult result = graph_->addKeyframe(keyframe, image);
   sequence_ = keyframe.sequence;
+  for (const nav_msgs::Odometry& odometry : hold_.addKeyframe(keyframe)) correct(odometry);
   if (result.match && configuration_.options.refines_in_window) {
     LoopMatch match = *result.match;
     numbering_.giveBack(&match);
@@ -252,7 +246,11 @@ void PoseGraphRos::handle(const MapRequest& request) {
 }
 
 void PoseGraphRos::handle(const nav_msgs::Odometry& odometry) {
-  publisher_.publish(odometry, graph_->drift(sequence_).value_or(Pose()));
+  for (const nav_msgs::Odometry& released : hold_.addOdometry(odometry)) correct(released);
+}
+
+void PoseGraphRos::correct(const nav_msgs::Odometry& odometry) {
+  publisher_.publish(odometry, graph_->locate(sequence_, vins_msgs::fromMsg(odometry.pose.pose)));
 }
 
 void PoseGraphRos::hear(const std::vector<Event>& events) {

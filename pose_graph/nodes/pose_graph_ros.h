@@ -17,6 +17,7 @@
 
 #include "keyframe_numbering.h"
 #include "map_services.h"
+#include "odometry_hold.h"
 #include "pose_graph/map/picture_store.h"
 #include "pose_graph/place/recent_images.h"
 #include "pose_graph/pose_graph.h"
@@ -31,7 +32,7 @@ namespace vins::pose_graph {
 /// The pose graph's ROS face, shared by node and nodelet. Callbacks only queue; one worker
 /// describes and compares, and the optimization has a thread of its own.
 ///
-/// Private parameters: `config_file` (the rig's YAML; needed), `map_frame`, `odom_frame`;
+/// Private parameters: `config_file` (the rig's YAML; needed), those of PoseGraphPublisher;
 /// `load_map` (a map file to begin with; otherwise the one of pose_graph_save_path, where the YAML
 /// has load_previous_pose_graph) and `save_map` (where finish() writes the map); `image_transport`
 /// is raw. Subscribes the file's image_topic and the estimator's `keyframe`,
@@ -64,6 +65,7 @@ class PoseGraphRos {
   void handle(LoopEdge edge);
   void handle(const nav_msgs::Odometry& odometry);
   void handle(const MapRequest& request);
+  void correct(const nav_msgs::Odometry& odometry);
   void stop();
   void loadFirstMap(const ros::NodeHandle& private_node);
   std::string saveMap(const std::string& file);
@@ -79,6 +81,7 @@ class PoseGraphRos {
   PoseGraphPublisher publisher_;
   PictureStore pictures_;
   KeyframeNumbering numbering_;  // the worker's alone
+  OdometryHold hold_;            // the worker's alone
   std::uint32_t sequence_ = 0;   // of the newest keyframe
   std::string save_at_end_;
 

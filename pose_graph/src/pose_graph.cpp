@@ -5,10 +5,12 @@
 #include <string>
 #include <utility>
 
+#include "pose_graph/graph/heading.h"
 #include "pose_graph/graph/loop_thinning.h"
 #include "pose_graph/loop/match_drawing.h"
 #include "pose_graph/place/recent_images.h"
 #include "vins_core/heading.h"
+#include "vins_core/pose_covariance.h"
 #include "vins_core/wall_clock.h"
 
 namespace vins::pose_graph {
@@ -102,7 +104,8 @@ bool PoseGraph::addToGraph(const Keyframe& keyframe, PoseGraphResult* result) {
     return false;
   }
   graph_.use([&](KeyframeGraph& graph) {
-    graph.addKeyframe(keyframe.id, keyframe.sequence, keyframe.stamp, keyframe.T_wb);
+    graph.addKeyframe(keyframe.id, keyframe.sequence, keyframe.stamp, keyframe.T_wb,
+                      keyframe.world);
   });
   newest_sequence_ = keyframe.sequence;
   left_to_skip_ = options_.skip_count;
@@ -282,6 +285,30 @@ void PoseGraph::finish() {
 
 std::optional<Pose> PoseGraph::drift(SequenceNumber sequence) {
   return graph_.use([&](const KeyframeGraph& graph) { return graph.drift(sequence); });
+}
+
+MapFromOdom PoseGraph::locate(SequenceNumber sequence, const Pose& T_wb) {
+  if (located_sequence_ && sequence > *located_sequence_) placeNewWorld(sequence, T_wb);
+  const std::optional<MapFromOdom> map_from_odom =
+      graph_.use([&](const KeyframeGraph& graph) { return graph.mapFromOdom(sequence); });
+  if (!map_from_odom) return {};
+  located_sequence_ = sequence;
+  last_T_mb_ = map_from_odom->pose * T_wb;
+  return *map_from_odom;
+}
+
+void PoseGraph::placeNewWorld(SequenceNumber sequence, const Pose& T_wb) {
+  // Between two recordings, or while the estimator was not there.
+  constexpr double kUnknownPosition = 10.0;  // deviation per axis [m]
+  constexpr double kUnknownYaw = 1.8;        // that of an angle of which nothing is known [rad]
+  se3::Matrix6d of_body = se3::Matrix6d::Zero();
+  of_body.diagonal().head<3>().setConstant(kUnknownPosition * kUnknownPosition);
+  of_body(5, 5) = kUnknownYaw * kUnknownYaw;
+  const Pose T_mw = driftOf(last_T_mb_, T_wb);
+  const se3::Matrix6d covariance = covarianceByPoint(T_mw.rotation * T_wb.position, of_body);
+  graph_.use([&](KeyframeGraph& graph) {
+    if (graph.beginsWorld(sequence)) graph.placeSequence(sequence, {T_mw, covariance});
+  });
 }
 
 std::vector<SequencePath> PoseGraph::paths() {

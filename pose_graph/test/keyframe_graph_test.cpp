@@ -8,6 +8,7 @@
 #include "pose_graph/graph/heading.h"
 #include "synthetic_keyframes.h"
 #include "vins_core/input_error.h"
+#include "vins_core/pose_covariance.h"
 
 namespace vins::pose_graph {
 namespace {
@@ -128,6 +129,60 @@ TEST(KeyframeGraph, UpdatedOdometryRemakesEdgesAndCarriesTheMapPoseAlong) {
   EXPECT_LT((graph.edges()[0].position - (moved.position - keyframes.odometry[0].position)).norm(),
             kRounding);
   EXPECT_FALSE(graph.updateOdometry(77, moved));
+}
+
+TEST(KeyframeGraph, ASequenceInTheSameWorldBeginsWithTheCorrectionOfTheOneBefore) {
+  const SyntheticKeyframes run(10, 20, 0.0, 5, kNoseUp);
+  KeyframeGraph graph;
+  const Pose T_wm(yawRotation(0.3), {1.0, -2.0, 0.5});  // the odometry has drifted by that
+  for (int i = 0; i < 10; ++i) {
+    graph.addKeyframe(i, 0, i, T_wm * run.truth[std::size_t(i)], 7);
+  }
+  MapFromOdom drifted{T_wm.inverse()};
+  drifted.covariance.diagonal() << 0.1, 0.2, 0.3, 0.0, 0.0, 0.4;
+  ASSERT_TRUE(graph.placeSequence(0, drifted));
+  EXPECT_LT(difference(vertex(graph, 9).T_mb, run.truth[9]), kRounding);
+  EXPECT_LT((graph.mapFromOdom(0)->covariance - drifted.covariance).norm(), 1e-9);
+  // After a reset.
+  graph.addKeyframe(10, 1, 10, T_wm * run.truth[9], 7);
+  EXPECT_LT(difference(*graph.drift(1), T_wm.inverse()), kRounding);
+  EXPECT_LT((graph.mapFromOdom(1)->covariance - drifted.covariance).norm(), 1e-9);
+  EXPECT_LT(difference(vertex(graph, 10).T_mb, run.truth[9]), kRounding);
+  EXPECT_FALSE(graph.inMap(1)) << "no loop has said so";
+  EXPECT_FALSE(graph.beginsWorld(1));
+  // Another world has its own frame.
+  graph.addKeyframe(11, 2, 11, run.truth[3], 8);
+  EXPECT_LT(difference(*graph.drift(2), Pose()), kRounding);
+  EXPECT_TRUE(graph.beginsWorld(2));
+  EXPECT_FALSE(graph.placeSequence(5, {})) << "unknown";
+}
+
+TEST(KeyframeGraph, TheLoopThatJoinsASequenceTellsHowWellItIsKnown) {
+  const SyntheticKeyframes old_run(10, 20, 0.0, 5, kNoseUp);
+  KeyframeGraph graph;
+  old_run.addTo(&graph, 0, 0);
+  const Pose T_wm(yawRotation(2.5), {-7.0, 3.0, 1.0});
+  for (int i = 0; i < 10; ++i) {
+    graph.addKeyframe(100 + i, 1, 1000 + i, T_wm * old_run.truth[std::size_t(i)]);
+  }
+  LoopEdge loop = old_run.loop(3, 6);
+  loop.query_id = 106;
+  loop.covariance.setZero();
+  loop.covariance.diagonal().head<3>().setConstant(0.04);
+  loop.covariance.diagonal().tail<3>().setConstant(0.01);
+  ASSERT_EQ(graph.addLoopEdge(loop), LoopOutcome::kJoined);
+  EXPECT_FALSE(graph.placeSequence(1, {})) << "it shares the older one's frame";
+  // Where the loop was measured, the transform is as good as the loop.
+  const MapFromOdom found = graph.mapFromOdom(1).value();
+  const se3::Matrix6d there = covarianceOfProduct(found.pose, found.covariance,
+                                                  T_wm * old_run.truth[6], se3::Matrix6d::Zero());
+  const KeyframeGraphOptions options;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(there(i, i), 0.04 + std::pow(options.loop_position_sigma, 2), 1e-9) << i;
+  }
+  EXPECT_NEAR(there(5, 5), 0.01 + std::pow(options.loop_yaw_sigma, 2), 1e-9);
+  EXPECT_NEAR(there(3, 3), 0.0, 1e-12) << "roll and pitch are the odometry's";
+  EXPECT_EQ(graph.mapFromOdom(0)->covariance, se3::Matrix6d(se3::Matrix6d::Zero()));
 }
 
 TEST(KeyframeGraph, FirstLoopMovesTheWholeYoungerSequence) {

@@ -25,11 +25,13 @@ TEST(KeyframeNumbering, LeavesOneRunAsItIs) {
 TEST(KeyframeNumbering, ANewRunHasIdsAndSequencesOfItsOwn) {
   KeyframeNumbering numbering;
   Keyframe old = keyframeOf(9, 2);
+  old.world = 1;
   numbering.take(&old);
   Keyframe keyframe = keyframeOf(0, 0);
   EXPECT_TRUE(numbering.take(&keyframe));
   EXPECT_EQ(keyframe.id, 10);
   EXPECT_EQ(keyframe.sequence, 3u);
+  EXPECT_EQ(keyframe.world, 2u) << "of its own";
   Keyframe next = keyframeOf(1, 0);
   EXPECT_FALSE(numbering.take(&next));
   EXPECT_EQ(next.id, 11);

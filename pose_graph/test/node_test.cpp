@@ -28,7 +28,7 @@
 #include "vins_msgs/LoopEdge.h"
 #include "vins_msgs/LoopMatch.h"
 #include "vins_msgs/MapFile.h"
-#include "vins_msgs/conversions.h"
+#include "vins_msgs/odometry.h"
 
 namespace vins::pose_graph {
 namespace {
@@ -128,8 +128,8 @@ class NodeTest : public ::testing::Test {
   }
 
   /// A visit, from image to odometry; waits until the node has answered.
-  bool visit(int place, const Pose& T_wm = {}) {
-    const Keyframe keyframe = revisits_.keyframe(next_id_++, place, T_wm);
+  bool visit(int place, const Pose& T_wm = {}, std::uint32_t sequence = 0) {
+    const Keyframe keyframe = revisits_.keyframe(next_id_++, place, T_wm, sequence);
     std_msgs::Header header;
     header.stamp = vins_msgs::toRosTime(keyframe.stamp);
     header.frame_id = "odom";
@@ -214,6 +214,23 @@ TEST_F(NodeTest, DoesWhatItsTopicsPromise) {
   EXPECT_TRUE(waitFor([this] { return told_["keyframes"] == "36"; }));
   EXPECT_EQ(told_["messages dropped"], "0");
   EXPECT_EQ(told_["keyframes without image"], "0");
+}
+
+TEST_F(NodeTest, TheMapsPoseDoesNotJumpWhereTheEstimatorResets) {
+  next_id_ = 500;  // after what the test before has flown, with the loops that it has closed
+  const Pose drift(yawRotation(0.02), {0.3, -0.2, 0.1});
+  ASSERT_TRUE(visit(60, drift));
+  const Pose before = vins_msgs::fromMsg(corrected_->pose.pose);
+  ASSERT_GT((before.position - (drift * Revisits::truth(60)).position).norm(), 0.05)
+      << "loops have corrected something";
+  // A new sequence in the same world, where the body has moved by one place.
+  next_id_ += 10;
+  ASSERT_TRUE(visit(61, drift, 1));
+  const Pose after = vins_msgs::fromMsg(corrected_->pose.pose);
+  const Pose moved = Revisits::truth(60).inverse() * Revisits::truth(61);
+  EXPECT_LT(((before * moved).position - after.position).norm(), 1e-6);
+  const geometry_msgs::TransformStamped T_map_odom = transform_->transforms[0];
+  EXPECT_GT(vins_msgs::fromMsg(T_map_odom.transform.translation).norm(), 0.05) << "not identity";
 }
 
 TEST_F(NodeTest, SavesAndLoadsMaps) {

@@ -8,6 +8,7 @@
 #include "pose_graph_fixture.h"
 #include "synthetic_keyframes.h"
 #include "vins_core/input_error.h"
+#include "vins_core/pose_covariance.h"
 
 namespace vins::pose_graph {
 namespace {
@@ -156,6 +157,62 @@ TEST_F(PoseGraphTest, ALoopJoinsANewSequence) {
   EXPECT_TRUE(graph->paths()[1].in_map);
   EXPECT_LT(difference(graph->drift(1).value() * elsewhere, Pose()), 10.0 * kSingle)
       << "ten metres away from where it is measured";
+}
+
+TEST_F(PoseGraphTest, TheMapsOdometryDoesNotJumpWhereTheEstimatorCarriesItsStateOverAReset) {
+  options_.graph = testing::exactLoops();
+  options_.found_position_sigma = 0.005;
+  options_.found_rotation_sigma = 0.05;
+  const auto graph = this->graph();
+  ASSERT_FALSE(fly(graph.get()).empty());
+  const Pose T_wb = kDrift * Revisits::truth(5);
+  const Pose before = graph->locate(0, T_wb).pose;
+  ASSERT_GT((before.position - Pose().position).norm(), 0.1) << "loops have corrected something";
+  // The odometry goes on in its world, with a new sequence, at a place that nobody knows.
+  visit(graph.get(), 40, kDrift, 1);
+  const MapFromOdom after = graph->locate(1, T_wb);
+  EXPECT_LT(difference(after.pose, before), 1e-9);
+  EXPECT_LT(difference(graph->paths()[1].keyframes[0].T_mb, before * kDrift * Revisits::truth(40)),
+            1e-9);
+}
+
+TEST_F(PoseGraphTest, ANewWorldBeginsWhereTheBodyWasLastSeenAndSaysThatThisIsAGuess) {
+  const auto graph = this->graph();
+  visit(graph.get(), 0);
+  EXPECT_EQ(graph->locate(0, Revisits::truth(0)).covariance, se3::Matrix6d(se3::Matrix6d::Zero()));
+  const Pose last = Revisits::truth(3);
+  graph->locate(0, last);
+  const Pose T_wm(yawRotation(2.0), {30.0, 10.0, -3.0});
+  Keyframe keyframe = revisits_.keyframe(next_id_++, 50, T_wm, 1);
+  keyframe.world = 1;
+  graph->addKeyframe(keyframe, revisits_.image(50));
+  const MapFromOdom begun = graph->locate(1, T_wm * last);
+  EXPECT_LT(difference(begun.pose * T_wm * last, last), 1e-9);
+  const se3::Matrix6d of_body =
+      covarianceOfProduct(begun.pose, begun.covariance, T_wm * last, se3::Matrix6d::Zero());
+  EXPECT_NEAR(of_body(0, 0), 100.0, 1e-6) << "[m^2]";
+  EXPECT_NEAR(of_body(5, 5), 3.24, 1e-9) << "[rad^2]";
+  EXPECT_LT(difference(graph->paths()[1].keyframes[0].T_mb, Revisits::truth(50)), 1e-9)
+      << "its keyframes go with it";
+  EXPECT_LT(difference(graph->locate(1, T_wm * Revisits::truth(9)).pose, begun.pose), 1e-12)
+      << "it is placed once";
+}
+
+TEST_F(PoseGraphTest, ALoopJoinsASequenceThatWasCarriedOver) {
+  const auto graph = this->graph();
+  for (int place = 0; place < 12; ++place) visit(graph.get(), place);
+  graph->locate(0, Revisits::truth(11));
+  const Pose drifted(yawRotation(0.1), {0.5, -0.5, 0.2});  // while it was lost
+  int joined = 0;
+  for (int place = 4; place < 7; ++place) {
+    for (const Event& event : visit(graph.get(), place, drifted, 1).events) {
+      joined += event.code == "sequence_joined" ? 1 : 0;
+    }
+  }
+  ASSERT_EQ(joined, 1);
+  const MapFromOdom found = graph->locate(1, drifted * Revisits::truth(6));
+  EXPECT_LT(difference(found.pose * drifted, Pose()), 10.0 * kSingle);
+  EXPECT_GT(found.covariance(0, 0), 0.0) << "as well as a loop is measured";
 }
 
 TEST_F(PoseGraphTest, HoveringAddsNothing) {

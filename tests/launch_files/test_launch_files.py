@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import unittest
 from contextlib import redirect_stderr
 from glob import glob
@@ -19,6 +20,17 @@ NEEDED = {
     'relocalize.launch': ['map:=/maps/hall.map'],
     'realsense_d435i.launch': ['driver:=false'],
 }
+for consumer in ['mavros.launch', 'robot_localization.launch']:
+    NEEDED[consumer] = NEEDED['vins.launch']
+# Packages that users of a launch file have and we do not need.
+OTHERS = ['robot_localization']
+# What other people's nodes subscribe, by their documentation: wiki.ros.org/mavros_extras,
+# docs.ros.org/en/noetic/api/robot_localization.
+SUBSCRIBED = {
+    'mavros/odometry/out': 'nav_msgs/Odometry',
+    'mavros/vision_pose/pose_cov': 'geometry_msgs/PoseWithCovarianceStamped',
+    'odom0': 'nav_msgs/Odometry',
+}
 STAGES = ['feature_tracker', 'vins_estimator', 'pose_graph']
 
 
@@ -32,6 +44,14 @@ def load(name, *args):
 
 def nodes_of(config):
     return {node.name: node for node in config.nodes}
+
+
+def published_types():
+    """What the estimator publishes, topic by topic, by its source."""
+    source = os.path.join(FOLDER, '..', 'vins_estimator', 'nodes', 'estimator_publisher.cpp')
+    with open(source) as text:
+        found = re.findall(r'advertise<(\w+)::(\w+)>\("(\w+)"', text.read())
+    return {'vins_estimator/' + topic: '%s/%s' % (package, kind) for package, kind, topic in found}
 
 
 def parameter(config, name):
@@ -76,6 +96,8 @@ class LaunchFiles(unittest.TestCase):
     def test_every_node_of_ours_is_built(self):
         for name in self.rigs():
             for node in load(name).nodes:
+                if node.package in OTHERS:
+                    continue
                 found = roslib.packages.find_node(node.package, node.type)
                 self.assertTrue(found, '%s: %s/%s' % (name, node.package, node.type))
 
@@ -135,6 +157,60 @@ class LaunchFiles(unittest.TestCase):
     def test_the_pose_graph_can_run_elsewhere(self):
         config = load('vins.launch', 'pose_graph:=false')
         self.assertEqual(sorted(nodes_of(config)), ['feature_tracker', 'vins_estimator'])
+
+    def test_a_namespace_is_that_of_nodes_parameters_and_frames(self):
+        for name in self.rigs():
+            if name in ['mavros.launch', 'robot_localization.launch']:
+                continue  # these go by the frames of their consumer
+            config = load(name, 'ns:=left')
+            for stage in STAGES:
+                self.assertEqual(nodes_of(config)[stage].namespace, '/left/', name)
+                self.assertTrue(parameter(config, '/left/%s/config_file' % stage), name)
+            self.assertEqual(parameter(config, '/left/vins_estimator/odom_frame'), 'left/odom')
+            self.assertEqual(parameter(config, '/left/pose_graph/odom_frame'), 'left/odom')
+            self.assertEqual(parameter(config, '/left/pose_graph/map_frame'), 'left/map')
+            plain = load(name)
+            self.assertEqual(nodes_of(plain)['vins_estimator'].namespace, '/', name)
+            self.assertEqual(parameter(plain, '/vins_estimator/odom_frame'), 'odom')
+
+    def test_frames_and_tf_can_be_left_to_the_robot(self):
+        config = load('vins.launch', 'base_frame:=base_link', 'body_frame:=imu_link',
+                      'camera_frame:=none', 'publish_tf:=0', 'tf_at_imu_rate:=1')
+        for key, value in [('base_frame', 'base_link'), ('body_frame', 'imu_link'),
+                           ('camera_frame', ''), ('publish_tf', 0), ('tf_at_imu_rate', 1)]:
+            self.assertEqual(parameter(config, '/vins_estimator/' + key), value, key)
+        self.assertTrue(parameter(config, '/pose_graph/publish_tf'))
+        self.assertFalse(parameter(load('vins.launch', 'publish_map_tf:=false'),
+                                   '/pose_graph/publish_tf'))
+
+    def test_mavros_gets_messages_of_the_types_that_it_subscribes(self):
+        types = published_types()
+        for message, topic in [('odometry', 'mavros/odometry/out'),
+                               ('pose', 'mavros/vision_pose/pose_cov')]:
+            config = load('mavros.launch', 'message:=' + message)
+            relay = nodes_of(config)['vins_to_mavros']
+            self.assertEqual((relay.package, relay.type), ('topic_tools', 'relay'))
+            ours, theirs = relay.args.split()
+            self.assertEqual(theirs, topic)
+            self.assertEqual(types[ours], SUBSCRIBED[topic])
+            # The frames that MAVROS knows.
+            self.assertEqual(parameter(config, '/vins_estimator/odom_frame'), 'odom')
+            self.assertEqual(parameter(config, '/vins_estimator/base_frame'), 'base_link')
+        self.assertIn('uav1/mavros/odometry/out',
+                      nodes_of(load('mavros.launch', 'mavros:=uav1/mavros'))['vins_to_mavros'].args)
+
+    def test_robot_localization_fuses_the_odometry_and_alone_publishes_odom_to_base(self):
+        config = load('robot_localization.launch')
+        ours = parameter(config, '/ekf_localization/odom0')
+        self.assertEqual(published_types()[ours], SUBSCRIBED['odom0'])
+        self.assertEqual(len(parameter(config, '/ekf_localization/odom0_config')), 15)
+        self.assertTrue(parameter(config, '/ekf_localization/publish_tf'))
+        self.assertFalse(parameter(config, '/vins_estimator/publish_tf'))
+        self.assertTrue(parameter(config, '/pose_graph/publish_tf'), 'map to odom')
+        for theirs, key in [('odom_frame', 'odom_frame'), ('world_frame', 'odom_frame'),
+                            ('base_link_frame', 'base_frame')]:
+            self.assertEqual(parameter(config, '/ekf_localization/' + theirs),
+                             parameter(config, '/vins_estimator/' + key), theirs)
 
     def test_rviz_comes_where_it_is_asked_for_with_a_configuration_that_is_there(self):
         for config in [load('vins_rviz.launch'), load('euroc.launch', 'rviz:=true')]:

@@ -14,6 +14,7 @@
 #include "vins_core/time.h"
 #include "vins_estimator/estimator.h"
 #include "vins_estimator/inertial/nav_state.h"
+#include "vins_estimator/inertial/propagator.h"
 
 namespace vins::simulation {
 
@@ -27,7 +28,15 @@ struct Gauge {
 struct OdometrySample {
   estimator::Odometry estimate;
   estimator::NavState truth;
-  std::optional<Gauge> gauge;  ///< with the first sample
+  std::optional<Gauge> gauge;                                         ///< with the first sample
+  Eigen::Vector3d true_angular_velocity_b = Eigen::Vector3d::Zero();  ///< [rad/s]
+};
+
+/// The same of a state that the IMU has carried on from the last odometry.
+struct PropagatedSample {
+  estimator::PropagatedState estimate;
+  estimator::NavState truth;
+  Eigen::Vector3d true_angular_velocity_b = Eigen::Vector3d::Zero();  ///< [rad/s]
 };
 
 /// What the estimator made of a flight.
@@ -35,9 +44,10 @@ struct OdometryRun {
   std::uint64_t seed = 0;
   Stamp begin = 0;  ///< of the first frame [ns]
   std::size_t frames = 0;
-  std::vector<OdometrySample> samples;  ///< one for each odometry, or fewer as asked for
-  std::vector<double> frame_seconds;    ///< work of the estimator on each frame [s]
-  std::vector<double> megabytes;        ///< resident memory after each minute of the flight
+  std::vector<OdometrySample> samples;       ///< one for each odometry, or fewer as asked for
+  std::vector<PropagatedSample> propagated;  ///< one for each IMU sample, where asked for
+  std::vector<double> frame_seconds;         ///< work of the estimator on each frame [s]
+  std::vector<double> megabytes;             ///< resident memory after each minute of the flight
   std::vector<Event> events;
   estimator::RigCalibration rig;       ///< as last estimated
   estimator::RigCalibration true_rig;  ///< as simulated

@@ -87,6 +87,7 @@ class Flight {
  public:
   Flight(const OdometryStudyOptions& options, std::uint64_t seed)
       : keep_every_(std::max<std::size_t>(1, options.keep_every)),
+        propagates_(options.propagates),
         motion_(makeMotion(options, seed)),
         imu_(makeImu(options, motion_, seed)),
         offset_(toNanoseconds(options.time_offset)),
@@ -94,6 +95,7 @@ class Flight {
         samples_(withFaults(imu_.samples, motion_.epoch() + toNanoseconds(options.features.start),
                             options.imu_faults)),
         estimator_(estimatorOptions(options, seed)),
+        propagator_(imuOptions(options, seed).noise),
         features_(motion_, eurocCamera(0), options.T_bc, withSeed(options.features, seed)) {
     run_.seed = seed;
     run_.true_rig = {options.T_bc, options.time_offset};
@@ -129,7 +131,15 @@ class Flight {
     for (; next_sample_ < samples_.size(); ++next_sample_) {
       if (samples_[next_sample_].arrival > stamp) return;
       estimator_.addImu(samples_[next_sample_].sample);
+      if (propagates_) propagate(samples_[next_sample_].sample);
     }
+  }
+
+  void propagate(const ImuSample& sample) {
+    const std::optional<estimator::PropagatedState> state = propagator_.addImu(sample);
+    if (!state) return;
+    const Stamp stamp = state->stamp - offset_;
+    run_.propagated.push_back({*state, truthAt(stamp), rateAt(stamp)});
   }
 
   void work() {
@@ -138,11 +148,16 @@ class Flight {
       run_.rig_covariance = result->rig_covariance;
       run_.events.insert(run_.events.end(), result->events.begin(), result->events.end());
       if (result->odometry && odometries_++ % keep_every_ == 0) keep(*result);
+      if (result->odometry && propagates_) {
+        propagator_.setState(result->odometry->stamp + toNanoseconds(result->rig.td),
+                             result->odometry->state, result->odometry->covariance);
+      }
     }
   }
 
   void keep(const estimator::EstimatorResult& result) {
-    OdometrySample sample{*result.odometry, truthAt(result.odometry->stamp), std::nullopt};
+    const Stamp stamp = result.odometry->stamp;
+    OdometrySample sample{*result.odometry, truthAt(stamp), std::nullopt, rateAt(stamp)};
     // After a reset the odometry goes on where it was, and its covariance tells how well.
     const bool is_first = run_.samples.empty();
     if (is_first && result.window.empty()) {
@@ -152,6 +167,10 @@ class Flight {
       sample.gauge = Gauge{oldest.state.T_wb, truthAt(oldest.stamp).T_wb};
     }
     run_.samples.push_back(sample);
+  }
+
+  Eigen::Vector3d rateAt(Stamp stamp) const {
+    return motion_.at(motion_.secondsAt(stamp)).angular_velocity_b;
   }
 
   estimator::NavState truthAt(Stamp stamp) const {
@@ -164,6 +183,7 @@ class Flight {
   }
 
   std::size_t keep_every_;
+  bool propagates_;
   std::size_t odometries_ = 0;
   TrajectorySpline motion_;
   ImuRecording imu_;
@@ -171,6 +191,7 @@ class Flight {
   std::vector<TimeInterval> blackouts_;
   std::vector<ArrivedSample> samples_;
   estimator::Estimator estimator_;
+  estimator::Propagator propagator_;
   FeatureSimulator features_;
   std::size_t next_sample_ = 0;
   OdometryRun run_;

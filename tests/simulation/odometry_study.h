@@ -26,6 +26,7 @@ struct OdometryStudyOptions {
   FeatureSimulatorOptions features;       ///< start and duration are the flight's; the seed is not
   std::vector<TimeInterval> blackouts;    ///< frames without features, from the flight's start on
   ImuFaults imu_faults;                   ///< from the flight's start on
+  bool propagates = false;                ///< odometry at the IMU's rate too
   std::size_t keep_every = 1;             ///< of so many odometry samples one is kept
   estimator::EstimatorOptions estimator;  ///< T_bc and td as the estimator is told; EuRoC's and 0.
                                           ///< IMU and pixel noise are those simulated

@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "simulation/euroc_rig.h"
+#include "vins_core/heading.h"
 #include "vins_core/trajectory_file.h"
 
 namespace fs = std::filesystem;
@@ -30,6 +32,28 @@ struct ToldLoop {
   Stamp stamp = 0;
   std::map<std::string, double> figures;
 };
+
+/// Poses of a camera that flies twice round a circle in one half of the hall and then once round
+/// one in the other half, looking ahead, in 45 s (TUM).
+void writeTwoCircles(const fs::path& path) {
+  constexpr double kRadius = 2.4, kSpeed = 1.0;  // [m], [m/s]
+  constexpr double kRound = 2.0 * M_PI * kRadius / kSpeed;
+  const Eigen::Matrix3d R_wc_ahead =
+      (Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();  // along the world's x
+  std::string text;
+  for (double t = 0.0; t < 3.0 * kRound; t += 0.05) {
+    const bool is_first = t < 2.0 * kRound;
+    // The circles touch at the origin, where both fly along y.
+    const double angle = t * kSpeed / kRadius * (is_first ? 1.0 : -1.0) + (is_first ? 0.0 : M_PI);
+    const Eigen::Vector3d p((is_first ? -kRadius : kRadius) + kRadius * std::cos(angle),
+                            kRadius * std::sin(angle), 1.7 + 0.1 * std::sin(2.0 * t));
+    const double heading = angle + (is_first ? 0.5 : -0.5) * M_PI;
+    const Eigen::Quaterniond R_wc(yawRotation(heading) * Eigen::Quaterniond(R_wc_ahead));
+    const Pose T_wb = Pose(R_wc, p) * simulation::eurocCameraInBody(0).inverse();
+    text += toTumLine({1600000000000000000 + toNanoseconds(t), T_wb}) + "\n";
+  }
+  std::ofstream(path) << text;
+}
 
 /// Two rounds through a hall in 40 s; a small image and half the rate, so that it takes not long.
 class LoopClosing : public ::testing::Test {
@@ -160,6 +184,39 @@ TEST_F(LoopClosing, ASecondRunFindsItselfInTheMapOfTheFirst) {
       0)
       << textOf(folder() / "log.txt");
   EXPECT_LT(errorOf("joined", "joined"), 0.1) << "[m]";
+}
+
+TEST_F(LoopClosing, TheMapsPoseGoesOnOverAResetOfTheEstimator) {
+  // Where nothing is recognized, after loops, the IMU is silent for longer than can be integrated
+  // over.
+  writeTwoCircles(folder() / "circles.txt");
+  ASSERT_EQ(
+      run("vins_tests/simulate_bag", "-o " + (folder() / "gap.bag").string() + " --trajectory " +
+                                         (folder() / "circles.txt").string() +
+                                         " --scene hall --rate 10 --imu-gap 35:0.7 --camera " +
+                                         (folder() / "camera.yaml").string()),
+      0);
+  ASSERT_EQ(run("vins_pipeline/run_bag", (folder() / "hall_rig.yaml").string() + " " +
+                                             (folder() / "gap.bag").string() + " --out " +
+                                             (folder() / "gap").string()),
+            0)
+      << textOf(folder() / "log.txt");
+  ASSERT_NE(textOf(folder() / "gap/events.csv").find(",reset,"), std::string::npos);
+  const Trajectory vio = readTrajectoryFile((folder() / "gap/vio_live.txt").string());
+  const Trajectory map = readTrajectoryFile((folder() / "gap/loop_live.txt").string());
+  ASSERT_EQ(vio.poses().size(), map.poses().size());
+  std::size_t after = 1;  // the first pose after the longest pause
+  const auto pause = [&](std::size_t i) { return vio.poses()[i].stamp - vio.poses()[i - 1].stamp; };
+  for (std::size_t i = 1; i < vio.poses().size(); ++i) after = pause(i) > pause(after) ? i : after;
+  ASSERT_GT(toSeconds(pause(after)), 0.7) << "the reset's";
+  const auto correction = [&](std::size_t i) {
+    return map.poses()[i].T_wb * vio.poses()[i].T_wb.inverse();
+  };
+  const Pose before = correction(after - 1), begun = correction(after);
+  RecordProperty("correction_mm", static_cast<int>(1e3 * before.position.norm()));
+  EXPECT_GT(before.position.norm(), 0.003) << "loops have corrected something [m]";
+  // No loop has joined the new sequence in its very first frame: the correction is the last one's.
+  EXPECT_LT((begun.position - before.position).norm(), 0.1 * before.position.norm());
 }
 
 TEST_F(LoopClosing, MapsThatCannotBeReadAreTold) {

@@ -4,7 +4,8 @@
 
 #include <sensor_msgs/point_cloud2_iterator.h>
 
-#include "vins_msgs/conversions.h"
+#include "vins_estimator/inertial/body_twist.h"
+#include "vins_msgs/odometry.h"
 
 namespace vins::estimator {
 namespace {
@@ -19,28 +20,39 @@ geometry_msgs::Point toPoint(double x, double y, double z) {
   return point;
 }
 
-}  // namespace
-
-nav_msgs::Odometry toOdometry(Stamp stamp, const NavState& state,
-                              const Eigen::Vector3d& angular_velocity_b,
-                              const Matrix15d& covariance, double gyroscope_noise,
-                              const std::string& odom, const std::string& body) {
+/// Of an Odometry or a PropagatedState, which have the same parts.
+template <typename State>
+nav_msgs::Odometry toOdometry(Stamp stamp, const State& state,
+                              const vins_msgs::FrameNames& frames) {
+  const BodyTwist twist = bodyTwist(state.state, state.covariance, state.angular_velocity_b,
+                                    state.angular_velocity_variance);
   nav_msgs::Odometry message;
   message.header.stamp = vins_msgs::toRosTime(stamp);
-  message.header.frame_id = odom;
-  message.child_frame_id = body;
-  message.pose.pose = vins_msgs::toMsg(state.T_wb);
-  vins_msgs::copyTo(Eigen::Matrix<double, 6, 6>(covariance.topLeftCorner<6, 6>()),
-                    message.pose.covariance);
-  const Eigen::Matrix3d R_bw = state.T_wb.rotation.conjugate().toRotationMatrix();
-  message.twist.twist.linear = vins_msgs::toMsg(Eigen::Vector3d(R_bw * state.v_w));
-  message.twist.twist.angular = vins_msgs::toMsg(angular_velocity_b);
-  Eigen::Matrix<double, 6, 6> twist = Eigen::Matrix<double, 6, 6>::Zero();
-  twist.topLeftCorner<3, 3>() =
-      R_bw * covariance.block<3, 3>(kVelocity, kVelocity) * R_bw.transpose();
-  twist.bottomRightCorner<3, 3>() = covariance.block<3, 3>(kGyrBias, kGyrBias);
-  twist.bottomRightCorner<3, 3>().diagonal().array() += gyroscope_noise * gyroscope_noise;
-  vins_msgs::copyTo(twist, message.twist.covariance);
+  message.header.frame_id = frames.odom;
+  message.child_frame_id = frames.body;
+  message.pose = vins_msgs::toMsg(state.state.T_wb,
+                                  se3::Matrix6d(state.covariance.template topLeftCorner<6, 6>()));
+  message.twist = vins_msgs::toMsg(twist.linear_b, twist.angular_b, twist.covariance);
+  return message;
+}
+
+}  // namespace
+
+nav_msgs::Odometry toOdometry(const Odometry& odometry, const vins_msgs::FrameNames& frames) {
+  return toOdometry(odometry.stamp, odometry, frames);
+}
+
+nav_msgs::Odometry toOdometry(const PropagatedState& state, const vins_msgs::FrameNames& frames) {
+  return toOdometry(state.stamp, state, frames);
+}
+
+nav_msgs::Odometry toExtrinsic(Stamp stamp, const RigCalibration& rig, const Matrix7d& covariance,
+                               const vins_msgs::FrameNames& frames) {
+  nav_msgs::Odometry message;
+  message.header.stamp = vins_msgs::toRosTime(stamp);
+  message.header.frame_id = frames.body;
+  message.child_frame_id = frames.camera;
+  message.pose = vins_msgs::toMsg(rig.T_bc, se3::Matrix6d(covariance.topLeftCorner<6, 6>()));
   return message;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include <nav_msgs/Odometry.h>
@@ -9,15 +8,20 @@
 
 #include "vins_core/pose.h"
 #include "vins_estimator/estimator.h"
+#include "vins_estimator/inertial/propagator.h"
+#include "vins_msgs/frame_names.h"
 
 namespace vins::estimator {
 
-/// A state as nav_msgs/Odometry: the pose in `odom`, the twist in `body`, as the message wants it.
-/// Its covariances are of position (world axes) and rotation (body axes), of velocity (body axes).
-nav_msgs::Odometry toOdometry(Stamp stamp, const NavState& state,
-                              const Eigen::Vector3d& angular_velocity_b,
-                              const Matrix15d& covariance, double gyroscope_noise,
-                              const std::string& odom, const std::string& body);
+/// A state as nav_msgs/Odometry: the pose in `odom`, with a covariance about the fixed axes of
+/// `odom`; the twist in `body`, with a covariance along the axes of `body`, as ROS defines them.
+nav_msgs::Odometry toOdometry(const Odometry& odometry, const vins_msgs::FrameNames& frames);
+nav_msgs::Odometry toOdometry(const PropagatedState& state, const vins_msgs::FrameNames& frames);
+
+/// The camera's pose in `body`, with a covariance about the fixed axes of `body`. `covariance` is
+/// of the rig's errors.
+nav_msgs::Odometry toExtrinsic(Stamp stamp, const RigCalibration& rig, const Matrix7d& covariance,
+                               const vins_msgs::FrameNames& frames);
 
 /// x, y, z clouds in single precision.
 sensor_msgs::PointCloud2 toCloud(const std::vector<LandmarkPoint>& points);

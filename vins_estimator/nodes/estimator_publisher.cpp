@@ -1,32 +1,36 @@
 #include "estimator_publisher.h"
 
-#include <algorithm>
-
 #include <boost/make_shared.hpp>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <std_msgs/Float64.h>
 #include <visualization_msgs/Marker.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include "estimator_messages.h"
 #include "vins_msgs/Event.h"
 #include "vins_msgs/ImuBias.h"
 #include "vins_msgs/Keyframe.h"
 #include "vins_msgs/KeyframePoseUpdate.h"
 #include "vins_msgs/LoopEdge.h"
-#include "vins_msgs/conversions.h"
+#include "vins_msgs/odometry.h"
 
 namespace vins::estimator {
 namespace {
+
+using vins_msgs::toTransform;
 
 constexpr std::size_t kMaxPathPoses = 20000;  // 16 minutes at 20 Hz
 constexpr std::size_t kMaxHistoryPoints = 100000;
 
 }  // namespace
 
-EstimatorPublisher::EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames)
-    : frames_(frames) {
+EstimatorPublisher::EstimatorPublisher(ros::NodeHandle node)
+    : frames_(vins_msgs::readFrameNames(node)),
+      publishes_tf_(vins_msgs::readSwitch(node, "publish_tf", true)),
+      tf_at_imu_rate_(vins_msgs::readSwitch(node, "tf_at_imu_rate", false)),
+      base_(frames_) {
   odometry_ = node.advertise<nav_msgs::Odometry>("odometry", 100);
+  pose_ = node.advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", 100);
   propagated_ = node.advertise<nav_msgs::Odometry>("imu_propagate", 1000);
   path_topic_ = node.advertise<nav_msgs::Path>("path", 10);
   cloud_ = node.advertise<sensor_msgs::PointCloud2>("point_cloud", 10);
@@ -52,31 +56,46 @@ void EstimatorPublisher::clear() {
 void EstimatorPublisher::publish(const EstimatorResult& result) {
   for (const Event& event : result.events) events_.publish(vins_msgs::toMsg(event));
   if (!result.odometry) return;
+  publishKeyframes(result);  // first: the pose graph learns from them what sequence this is
   publishOdometry(*result.odometry);
   publishCamera(result);
   publishRig(result);
   publishBias(*result.odometry);
-  publishTransforms(result);
+  publishCameraTransform(result);
   publishWindow(result);
   publishClouds(result);
-  publishKeyframes(result);
   publishLoopEdges(result);
 }
 
 void EstimatorPublisher::publish(const PropagatedState& state) {
-  propagated_.publish(toOdometry(state.stamp, state.state, state.angular_velocity_b,
-                                 state.covariance, 0.0, frames_.odom, frames_.body));
+  const std::optional<nav_msgs::Odometry> message = base_.toBase(toOdometry(state, frames_));
+  if (!message) return;
+  propagated_.publish(*message);
+  if (publishes_tf_ && tf_at_imu_rate_) transforms_.sendTransform(toTransform(*message));
 }
 
 void EstimatorPublisher::publishOdometry(const Odometry& odometry) {
-  const auto message = boost::make_shared<nav_msgs::Odometry>(
-      toOdometry(odometry.stamp, odometry.state, odometry.angular_velocity_b, odometry.covariance,
-                 0.0, frames_.odom, frames_.body));
-  odometry_.publish(message);
+  const std::optional<nav_msgs::Odometry> message = base_.toBase(toOdometry(odometry, frames_));
+  if (!message) return;
+  odometry_.publish(boost::make_shared<nav_msgs::Odometry>(*message));
+  publishPose(*message);
+  addToPath(*message);
+  if (publishes_tf_ && !tf_at_imu_rate_) transforms_.sendTransform(toTransform(*message));
+}
+
+void EstimatorPublisher::publishPose(const nav_msgs::Odometry& odometry) {
+  if (pose_.getNumSubscribers() == 0) return;
+  geometry_msgs::PoseWithCovarianceStamped pose;
+  pose.header = odometry.header;
+  pose.pose = odometry.pose;
+  pose_.publish(pose);
+}
+
+void EstimatorPublisher::addToPath(const nav_msgs::Odometry& odometry) {
   geometry_msgs::PoseStamped pose;
-  pose.header = message->header;
-  pose.pose = message->pose.pose;
-  path_.header.stamp = message->header.stamp;
+  pose.header = odometry.header;
+  pose.pose = odometry.pose.pose;
+  path_.header.stamp = odometry.header.stamp;
   path_.poses.push_back(pose);
   // Half goes at once, so that the cost is small on average.
   if (path_.poses.size() > kMaxPathPoses) {
@@ -86,11 +105,8 @@ void EstimatorPublisher::publishOdometry(const Odometry& odometry) {
 }
 
 void EstimatorPublisher::publishCamera(const EstimatorResult& result) {
-  nav_msgs::Odometry camera;
-  camera.header.stamp = vins_msgs::toRosTime(result.stamp);
-  camera.header.frame_id = frames_.odom;
-  camera.child_frame_id = frames_.camera;
-  camera.pose.pose = vins_msgs::toMsg(result.odometry->state.T_wb * result.rig.T_bc);
+  const nav_msgs::Odometry camera = vins_msgs::ofChildFrame(toOdometry(*result.odometry, frames_),
+                                                            frames_.camera, result.rig.T_bc);
   camera_.publish(camera);
   visualization_msgs::MarkerArray frustum;
   frustum.markers.push_back(cameraFrustum(0.4));
@@ -100,14 +116,7 @@ void EstimatorPublisher::publishCamera(const EstimatorResult& result) {
 }
 
 void EstimatorPublisher::publishRig(const EstimatorResult& result) {
-  nav_msgs::Odometry extrinsic;
-  extrinsic.header.stamp = vins_msgs::toRosTime(result.stamp);
-  extrinsic.header.frame_id = frames_.body;
-  extrinsic.child_frame_id = frames_.camera;
-  extrinsic.pose.pose = vins_msgs::toMsg(result.rig.T_bc);
-  const Eigen::Matrix<double, 6, 6> covariance = result.rig_covariance.topLeftCorner<6, 6>();
-  std::copy_n(covariance.data(), 36, extrinsic.pose.covariance.begin());
-  extrinsic_.publish(extrinsic);
+  extrinsic_.publish(toExtrinsic(result.stamp, result.rig, result.rig_covariance, frames_));
   std_msgs::Float64 td;
   td.data = result.rig.td;
   time_offset_.publish(td);
@@ -125,19 +134,10 @@ void EstimatorPublisher::publishBias(const Odometry& odometry) {
   bias_.publish(message);
 }
 
-void EstimatorPublisher::publishTransforms(const EstimatorResult& result) {
-  const auto transform = [&](const std::string& parent, const std::string& child,
-                             const Pose& pose) {
-    geometry_msgs::TransformStamped message;
-    message.header.stamp = vins_msgs::toRosTime(result.stamp);
-    message.header.frame_id = parent;
-    message.child_frame_id = child;
-    message.transform.translation = vins_msgs::toMsg(pose.position);
-    message.transform.rotation = vins_msgs::toMsg(pose).orientation;
-    return message;
-  };
-  transforms_.sendTransform({transform(frames_.odom, frames_.body, result.odometry->state.T_wb),
-                             transform(frames_.body, frames_.camera, result.rig.T_bc)});
+void EstimatorPublisher::publishCameraTransform(const EstimatorResult& result) {
+  if (!publishes_tf_ || frames_.camera.empty()) return;
+  transforms_.sendTransform(
+      toTransform(toExtrinsic(result.stamp, result.rig, result.rig_covariance, frames_)));
 }
 
 void EstimatorPublisher::publishWindow(const EstimatorResult& result) {

@@ -1,29 +1,22 @@
 #pragma once
 
-#include <string>
-
 #include <nav_msgs/Path.h>
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include "vins_estimator/estimator.h"
-#include "vins_estimator/inertial/propagator.h"
+#include "base_frame.h"
+#include "estimator_messages.h"
 
 namespace vins::estimator {
-
-/// Frame names of what is published.
-struct EstimatorFrames {
-  std::string odom = "odom";
-  std::string body = "body";
-  std::string camera = "camera";
-};
 
 /// Turns the estimator's results into messages. Topics live in the node's own namespace, under the
 /// names that VINS-Mono's users know.
 class EstimatorPublisher {
  public:
-  EstimatorPublisher(ros::NodeHandle node, const EstimatorFrames& frames);
+  /// Reads the frames' names (FrameNames) and the switches `publish_tf` (1) and `tf_at_imu_rate`
+  /// (0) from the node's parameters. Throws InputError for values that are not allowed.
+  explicit EstimatorPublisher(ros::NodeHandle node);
 
   /// All that one frame has brought.
   void publish(const EstimatorResult& result);
@@ -36,20 +29,26 @@ class EstimatorPublisher {
 
  private:
   void publishOdometry(const Odometry& odometry);
+  void publishPose(const nav_msgs::Odometry& odometry);
+  void addToPath(const nav_msgs::Odometry& odometry);
   void publishCamera(const EstimatorResult& result);
   void publishRig(const EstimatorResult& result);
   void publishBias(const Odometry& odometry);
-  void publishTransforms(const EstimatorResult& result);
+  void publishCameraTransform(const EstimatorResult& result);
   void publishWindow(const EstimatorResult& result);
   void publishClouds(const EstimatorResult& result);
   void publishKeyframes(const EstimatorResult& result);
   void publishLoopEdges(const EstimatorResult& result);
 
-  EstimatorFrames frames_;
+  vins_msgs::FrameNames frames_;
+  bool publishes_tf_;
+  bool tf_at_imu_rate_;
+  BaseFrame base_;
   nav_msgs::Path path_;
   sensor_msgs::PointCloud2 history_;
-  ros::Publisher odometry_, propagated_, path_topic_, cloud_, history_topic_, key_poses_, camera_,
-      camera_visual_, keyframe_, left_, loop_edge_, extrinsic_, time_offset_, bias_, events_;
+  ros::Publisher odometry_, pose_, propagated_, path_topic_, cloud_, history_topic_, key_poses_,
+      camera_, camera_visual_, keyframe_, left_, loop_edge_, extrinsic_, time_offset_, bias_,
+      events_;
   tf2_ros::TransformBroadcaster transforms_;
 };
 

@@ -13,21 +13,13 @@ constexpr std::size_t kMaxFramesWaiting = 40;  // two seconds at 20 Hz
 constexpr std::size_t kRecentEvents = 5;
 constexpr std::size_t kManyWaiting = 5;  // frames: a quarter of a second behind at 20 Hz
 constexpr double kSilence = 2.0;         // without input, before somebody is told [s]
-const char* const kFeatureTopic = "/feature_tracker/feature";
+const char* const kFeatureTopic = "feature_tracker/feature";
 
 EstimatorOptions loadOptions(const vins_msgs::NodeConfiguration& configuration) {
   const EstimatorOptions options =
       readEstimatorOptions(configuration.parameters, configuration.rig);
   ROS_INFO_STREAM("estimator options:\n" << options);
   return options;
-}
-
-EstimatorFrames framesOf(const ros::NodeHandle& private_node) {
-  EstimatorFrames frames;
-  private_node.param("odom_frame", frames.odom, frames.odom);
-  private_node.param("body_frame", frames.body, frames.body);
-  private_node.param("camera_frame", frames.camera, frames.camera);
-  return frames;
 }
 
 void log(const Event& event) {
@@ -64,17 +56,17 @@ EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
     : options_(loadOptions(configuration)),
       imu_topic_(configuration.rig.imu.topic),
       estimator_(options_),
-      publisher_(private_node, framesOf(private_node)),
+      publisher_(private_node),
       propagator_(options_.imu),
       diagnostics_(node, private_node) {
   camera_model::requireImuTopic(configuration.parameters, configuration.rig);
   diagnostics_.setHardwareID("visual-inertial rig");
   diagnostics_.add("estimator", this, &EstimatorRos::report);
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
-  imu_ = node.subscribe(imu_topic_, 2000, &EstimatorRos::onImu, this, no_delay);
+  imu_ = node.subscribe(parameters.text("imu_topic"), 2000, &EstimatorRos::onImu, this, no_delay);
   features_ = node.subscribe(kFeatureTopic, 100, &EstimatorRos::onFeatures, this, no_delay);
-  matches_ = node.subscribe("/pose_graph/loop_match", 100, &EstimatorRos::onLoopMatch, this);
-  restarts_ = node.subscribe("/feature_tracker/restart", 10, &EstimatorRos::onRestart, this);
+  matches_ = node.subscribe("pose_graph/loop_match", 100, &EstimatorRos::onLoopMatch, this);
+  restarts_ = node.subscribe("feature_tracker/restart", 10, &EstimatorRos::onRestart, this);
   reset_ = private_node.advertiseService("reset", &EstimatorRos::onReset, this);
   timer_ = node.createTimer(ros::Duration(1.0),
                             [this](const ros::TimerEvent&) { diagnostics_.update(); });
@@ -208,18 +200,18 @@ void EstimatorRos::restart() {
 std::string EstimatorRos::missingInput() const {
   const ros::WallTime now = ros::WallTime::now();
   if (last_imu_.isZero()) {
-    return "no IMU sample yet on " + imu_topic_ +
+    return "no IMU sample yet on " + imu_.getTopic() +
            ": does the IMU or the bag run, is imu_topic right? (rostopic hz)";
   }
   if (last_frame_.isZero()) {
-    return std::string("no features yet on ") + kFeatureTopic + ": does feature_tracker run?";
+    return "no features yet on " + features_.getTopic() + ": does feature_tracker run?";
   }
   if ((now - last_imu_).toSec() > kSilence) {
-    return "IMU samples have stopped on " + imu_topic_ +
+    return "IMU samples have stopped on " + imu_.getTopic() +
            ": has the bag ended, has the IMU's driver stopped?";
   }
   if ((now - last_frame_).toSec() > kSilence) {
-    return std::string("features have stopped on ") + kFeatureTopic +
+    return "features have stopped on " + features_.getTopic() +
            ": have images stopped, or feature_tracker?";
   }
   return "";

@@ -28,8 +28,8 @@ namespace vins::estimator {
 /// An IMU sample goes through the propagator in its own callback, so that odometry at the IMU's
 /// rate never waits for the solver.
 ///
-/// Private parameters: `config_file` (the rig's YAML; needed), `odom_frame`, `body_frame`,
-/// `camera_frame`. Service: `~reset`.
+/// Private parameters: `config_file` (the rig's YAML; needed), those of EstimatorPublisher. Topics
+/// of other stages are looked for in the node's namespace. Service: `~reset`.
 class EstimatorRos {
  public:
   /// Throws InputError for a configuration that is missing or malformed.
@@ -67,7 +67,6 @@ class EstimatorRos {
   std::string waitingReason() const;
 
   EstimatorOptions options_;
-  std::string imu_topic_;
   Estimator estimator_;  // the worker's alone
   EstimatorPublisher publisher_;
   FeatureNumbering numbering_;  // of the features' callback

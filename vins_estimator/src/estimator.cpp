@@ -105,6 +105,7 @@ class Estimator::Implementation {
     } else {
       track(*measurements, &result);
     }
+    for (Keyframe& keyframe : result.keyframes) keyframe.world = world_;
     result.status = status_;
     result.rig = tracker_.window().rig;
     if (tracker_.window().refines_rig) result.rig_covariance = tracker_.window().rig_covariance;
@@ -113,6 +114,7 @@ class Estimator::Implementation {
 
   /// As at the very first.
   void reset() {
+    if (credible_) ++world_;
     tracker_.forgetRig();
     startAnew();
     continuation_.clear();
@@ -265,10 +267,7 @@ class Estimator::Implementation {
     odometry.stamp = measurements.frame.stamp;
     odometry.state = window.frames.back().state.value();
     odometry.sequence = sequence_;
-    if (!measurements.imu.empty()) {
-      odometry.angular_velocity_b =
-          measurements.imu.back().angular_velocity - odometry.state.gyroscope_bias;
-    }
+    reportRate(measurements.imu, &odometry);
     odometry.covariance = window.frames.back().covariance;
     result->odometry = odometry;
     credible_ = odometry;
@@ -276,6 +275,20 @@ class Estimator::Implementation {
     for (const WindowFrame& frame : window.frames) {
       result->window.push_back({frame.stamp, frame.state.value()});
     }
+  }
+
+  /// The newest reading. Where it was interpolated at the frame's time, noise of its two neighbours
+  /// is averaged in it.
+  void reportRate(const std::vector<ImuSample>& samples, Odometry* odometry) const {
+    if (samples.empty()) return;
+    odometry->angular_velocity_b = samples.back().angular_velocity - odometry->state.gyroscope_bias;
+    const double period = queue_.imuPeriod();
+    const double last = samples.size() < 2
+                            ? period
+                            : toSeconds(samples.back().stamp - samples[samples.size() - 2].stamp);
+    const double share = std::min(1.0, last / period);
+    const double averaging = share * share + (1.0 - share) * (1.0 - share);
+    odometry->angular_velocity_variance = averaging * options_.imu.gyroscopeVariance(period);
   }
 
   EstimatorOptions options_;
@@ -289,6 +302,7 @@ class Estimator::Implementation {
   std::optional<Odometry> credible_;  ///< the last that was reported
   EstimatorStatus status_ = EstimatorStatus::kInitializing;
   std::uint32_t sequence_ = 0;
+  std::uint32_t world_ = 0;  ///< rises where nothing is carried over
   int backlog_ = 0;
   std::deque<LoopMatch> waiting_loops_;  ///< of keyframes that have just become such
   bool extrinsic_is_known_ = true;

@@ -1,5 +1,7 @@
 #include "vins_estimator/estimator.h"
 
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "synthetic_flight.h"
@@ -103,6 +105,18 @@ const Odometry* lastOf(const std::vector<EstimatorResult>& results, std::uint32_
   return last;
 }
 
+/// Keyframe::world of a sequence's keyframes.
+std::set<std::uint32_t> worldsOf(const std::vector<EstimatorResult>& results,
+                                 std::uint32_t sequence) {
+  std::set<std::uint32_t> worlds;
+  for (const EstimatorResult& result : results) {
+    for (const Keyframe& keyframe : result.keyframes) {
+      if (keyframe.sequence == sequence) worlds.insert(keyframe.world);
+    }
+  }
+  return worlds;
+}
+
 TEST(Estimator, FollowsAFlightWithCovariance) {
   const SyntheticFlight flight = longFlight();
   Follower follower(flight, optionsFor(flight));
@@ -140,6 +154,8 @@ TEST(Estimator, GoesOnFromTheLastCredibleStateAfterALongSilence) {
   // And it says how little it knows of the way: more than before by far.
   EXPECT_GT(std::sqrt(after->covariance(0, 0)), 10.0 * std::sqrt(before->covariance(0, 0)));
   EXPECT_GT(std::sqrt(after->covariance(0, 0)), 0.3);
+  EXPECT_EQ(worldsOf(results, 0), std::set<std::uint32_t>{0});
+  EXPECT_EQ(worldsOf(results, 1), std::set<std::uint32_t>{0}) << "the frame is still the same";
 }
 
 TEST(Estimator, FliesThroughADarkSecond) {
@@ -166,6 +182,23 @@ TEST(Estimator, ARecordingStartedAgainIsANewWorld) {
   EXPECT_EQ(lastOf(results, 1)->sequence, 1u);
   // At the origin again, known as well as at the very first.
   EXPECT_LT(std::sqrt(first->covariance(0, 0)), 0.1);
+  EXPECT_EQ(worldsOf(results, 1), std::set<std::uint32_t>{1});
+}
+
+TEST(Estimator, TheRateHasTheNoiseOfTheReadingsInIt) {
+  const SyntheticFlight flight = longFlight();
+  EstimatorOptions options = optionsFor(flight);
+  const double reading = options.imu.gyroscopeVariance(0.005);
+  Follower follower(flight, options);
+  const auto results = follower.fly(1.0, 6.0);
+  ASSERT_NE(lastOf(results, 0), nullptr);
+  EXPECT_NEAR(lastOf(results, 0)->angular_velocity_variance, reading, 1e-6 * reading);
+  // Halfway between two readings it is their mean.
+  options.td = 0.0025;
+  Follower between(flight, options);
+  const auto averaged = between.fly(1.0, 6.0);
+  ASSERT_NE(lastOf(averaged, 0), nullptr);
+  EXPECT_NEAR(lastOf(averaged, 0)->angular_velocity_variance, 0.5 * reading, 1e-6 * reading);
 }
 
 TEST(Estimator, ReportsTheRigAsConfiguredWhereItIsTrusted) {

@@ -156,6 +156,38 @@ TEST(Propagator, TheCovarianceIsThatOfManyNoisyRuns) {
   EXPECT_NEAR(sum / kRuns, 1.0, 0.08);
 }
 
+TEST(Propagator, TheNoiseOfAStepActsOnThePositionAndWithTheVelocity) {
+  constexpr double kStep = 0.1;  // [s]: long, so that one step shows it
+  const ImuNoise n = noise();
+  Propagator propagator(n);
+  propagator.setState(0, trueState(0.0), Matrix15d::Zero());
+  propagator.addImu(trueSample(0.0));
+  const auto state = propagator.addImu(trueSample(kStep));
+  ASSERT_TRUE(state);
+  // An error a of the mean acceleration has the variance s^2 / dt, and makes a dt of velocity and
+  // a dt^2 / 2 of position. The gyroscope's noise adds less than 0.01 % here.
+  const double variance = n.accelerometer_noise * n.accelerometer_noise / kStep;
+  const auto P = [&](int i, int j) { return state->covariance(i, j); };
+  for (int i = 0; i < 3; ++i) {
+    const double expected = variance * std::pow(0.5 * kStep * kStep, 2);
+    EXPECT_NEAR(P(kPosition + i, kPosition + i), expected, 0.01 * expected) << i;
+    const double correlation =
+        P(kPosition + i, kVelocity + i) /
+        std::sqrt(P(kPosition + i, kPosition + i) * P(kVelocity + i, kVelocity + i));
+    EXPECT_NEAR(correlation, 1.0, 1e-3) << i;
+  }
+}
+
+TEST(Propagator, TheRateHasTheNoiseOfOneReading) {
+  Propagator propagator(noise());
+  propagator.setState(0, trueState(0.0), Matrix15d::Zero());
+  std::optional<PropagatedState> state;
+  for (int i = 0; i <= 40; ++i) state = propagator.addImu(trueSample(0.005 * i));
+  ASSERT_TRUE(state);
+  const double expected = noise().gyroscope_noise * noise().gyroscope_noise * 200.0;
+  EXPECT_NEAR(state->angular_velocity_variance, expected, 1e-6 * expected);
+}
+
 TEST(Propagator, IgnoresWhatItCannotUse) {
   Propagator propagator(noise());
   EXPECT_FALSE(propagator.addImu(trueSample(0.0)));

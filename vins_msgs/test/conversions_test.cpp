@@ -81,7 +81,7 @@ void expectSame(const vins::FeatureFrame& a, const vins::FeatureFrame& b) {
 }
 
 void expectSame(const vins::Keyframe& a, const vins::Keyframe& b) {
-  const auto& [id, sequence, stamp, chosen_at, T_wb, T_bc, covariance, points] = a;
+  const auto& [id, sequence, stamp, chosen_at, T_wb, T_bc, covariance, points, world] = a;
   EXPECT_EQ(id, b.id);
   EXPECT_EQ(sequence, b.sequence);
   EXPECT_EQ(stamp, b.stamp);
@@ -90,6 +90,7 @@ void expectSame(const vins::Keyframe& a, const vins::Keyframe& b) {
   expectSame(T_bc, b.T_bc);
   EXPECT_EQ(covariance, b.covariance);
   expectSame(points, b.points);
+  EXPECT_EQ(world, b.world);
 }
 
 void expectSame(const vins::KeyframePoseUpdate& a, const vins::KeyframePoseUpdate& b) {

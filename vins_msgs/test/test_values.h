@@ -53,8 +53,15 @@ class Random {
   }
   vins::KeyframePoint keyframePoint() { return {id(), pixel(), bearing(), vector()}; }
   vins::Keyframe keyframe() {
-    return {id(),   sequence(), stamp(),     stamp(),
-            pose(), pose(),     matrix<6>(), {keyframePoint(), keyframePoint(), keyframePoint()}};
+    return {id(),
+            sequence(),
+            stamp(),
+            stamp(),
+            pose(),
+            pose(),
+            matrix<6>(),
+            {keyframePoint(), keyframePoint(), keyframePoint()},
+            sequence()};
   }
   vins::KeyframePoseUpdate poseUpdate() { return {id(), sequence(), stamp(), pose()}; }
   vins::MatchedFeature matchedFeature() { return {id(), bearing()}; }

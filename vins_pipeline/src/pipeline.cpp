@@ -167,8 +167,9 @@ void Pipeline::closeLoops(const estimator::EstimatorResult& estimate, PipelineRe
   for (const Keyframe& keyframe : estimate.keyframes) addKeyframe(keyframe, result);
   for (const KeyframePoseUpdate& update : estimate.left) pose_graph_->update(update);
   if (!estimate.odometry) return;
-  const Pose T_mw = pose_graph_->drift(estimate.odometry->sequence).value_or(Pose());
-  result->corrected.push_back({estimate.odometry->stamp, T_mw * estimate.odometry->state.T_wb});
+  const Pose& T_wb = estimate.odometry->state.T_wb;
+  const Pose T_mw = pose_graph_->locate(estimate.odometry->sequence, T_wb).pose;
+  result->corrected.push_back({estimate.odometry->stamp, T_mw * T_wb});
 }
 
 void Pipeline::addKeyframe(const Keyframe& keyframe, PipelineResult* result) {

@@ -12,6 +12,7 @@
 
 #include "camera_model/camera.h"
 #include "pose_graph/graph/keyframe_graph.h"
+#include "pose_graph/graph/map_from_odom.h"
 #include "pose_graph/graph/optimizer_thread.h"
 #include "pose_graph/loop/loop_finder.h"
 #include "pose_graph/map/map_file.h"
@@ -121,6 +122,14 @@ class PoseGraph {
   /// keyframe.
   std::optional<Pose> drift(SequenceNumber sequence);
 
+  /// Where the odometry's world stands in the map, for an odometry pose T_wb of a sequence: to be
+  /// asked for each odometry in its order, for the map's odometry does not jump where it can be
+  /// avoided. A sequence in the same world as an earlier one begins with the correction of that.
+  /// The first of a new world (a restarted recording or estimator) begins where the body was last
+  /// seen in the map; how far it has moved since is not known, as the covariance says. Both hold
+  /// until a loop joins the sequence. Identity where the sequence has no keyframe yet.
+  MapFromOdom locate(SequenceNumber sequence, const Pose& T_wb);
+
   /// A copy of the keyframes by sequence, from old to new.
   std::vector<SequencePath> paths();
 
@@ -136,6 +145,7 @@ class PoseGraph {
 
  private:
   bool isWorthKeeping(const Keyframe& keyframe);
+  void placeNewWorld(SequenceNumber sequence, const Pose& T_wb);
   bool showsSomethingNew(const Keyframe& keyframe, const KeyframeGraph& graph) const;
   bool addToGraph(const Keyframe& keyframe, PoseGraphResult* result);
   void take(const Keyframe& keyframe, LoopSearch search, PoseGraphResult* result);
@@ -157,6 +167,8 @@ class PoseGraph {
   SharedKeyframeGraph graph_;
   PoseGraphStatistics counts_;
   std::optional<SequenceNumber> newest_sequence_;
+  std::optional<SequenceNumber> located_sequence_;  ///< of the newest odometry
+  Pose last_T_mb_;                                  ///< of the newest odometry, in the map
   int left_to_skip_ = 0;
   bool waits_for_refinement_ = false;     ///< a found loop is in the graph and not optimized yet
   std::optional<Stamp> last_gate_event_;  ///< [ns]

@@ -87,8 +87,16 @@ void KeyframeGraph::insert(KeyframeVertex vertex) {
 }
 
 void KeyframeGraph::addKeyframe(std::int64_t id, SequenceNumber sequence, Stamp stamp,
-                                const Pose& T_wb) {
-  insert({id, sequence, stamp, T_wb, drift(sequence).value_or(Pose()) * T_wb, 0.0});
+                                const Pose& T_wb, std::optional<std::uint32_t> world) {
+  const bool is_new = sequences_.count(sequence) == 0;
+  MapFromOdom begin;
+  if (const Sequence* carried = is_new ? newestOf(world) : nullptr) {
+    begin = {carried->T_mw, carried->covariance};
+  }
+  insert({id, sequence, stamp, T_wb, drift(sequence).value_or(begin.pose) * T_wb, 0.0});
+  if (!is_new) return;
+  sequences_.at(sequence).world = world;
+  sequences_.at(sequence).covariance = begin.covariance;
 }
 
 bool KeyframeGraph::updateOdometry(std::int64_t id, const Pose& T_wb) {
@@ -125,40 +133,15 @@ LoopOutcome KeyframeGraph::addLoopEdge(const LoopEdge& edge) {
   if (of_query == of_old) return LoopOutcome::kAdded;
   const Pose T_new_old = correctionOf(edge);
   if (of_old < of_query) {
-    moveComponent(of_query, T_new_old);
+    const auto covariance = covarianceOfCorrection(old->second, query->second, T_new_old, edge);
+    moveComponent(of_query, {T_new_old, covariance}, query->second.sequence);
   } else {
-    moveComponent(of_old, T_new_old.inverse());
+    const Pose T_old_new = T_new_old.inverse();
+    const auto covariance = covarianceOfCorrection(query->second, old->second, T_old_new, edge);
+    moveComponent(of_old, {T_old_new, covariance}, old->second.sequence);
   }
   joinComponents(std::min(of_query, of_old), std::max(of_query, of_old));
   return LoopOutcome::kJoined;
-}
-
-Pose KeyframeGraph::correctionOf(const LoopEdge& edge) const {
-  const KeyframeVertex& query = vertices_.at(edge.query_id);
-  const KeyframeVertex& old = vertices_.at(edge.old_id);
-  const HeadingEdge relative = loopEdge(edge);
-  const Pose T_mw_old = driftOf(old.T_mb, old.T_wb);
-  const Pose T_mw_query = driftOf(query.T_mb, query.T_wb);
-  const Eigen::Quaterniond R_mw = T_mw_old.rotation * yawRotation(relative.yaw);
-  const Eigen::Vector3d p_m = old.T_mb.position + T_mw_old.rotation * relative.position;
-  return Pose(R_mw, p_m - R_mw * query.T_wb.position) * T_mw_query.inverse();
-}
-
-void KeyframeGraph::joinComponents(SequenceNumber older, SequenceNumber younger) {
-  for (auto& [number, sequence] : sequences_) {
-    if (sequence.component == younger) sequence.component = older;
-  }
-}
-
-void KeyframeGraph::moveComponent(SequenceNumber component, const Pose& T_new_old) {
-  for (auto& [number, sequence] : sequences_) {
-    if (sequence.component != component) continue;
-    for (const std::int64_t id : sequence.ids) {
-      KeyframeVertex& vertex = vertices_.at(id);
-      vertex.T_mb = T_new_old * vertex.T_mb;
-    }
-    sequence.T_mw = T_new_old * sequence.T_mw;
-  }
 }
 
 void KeyframeGraph::noteDrift(Sequence* sequence) const {

@@ -42,6 +42,12 @@ struct ImuNoise {
   /// it averages out within a few periods, this share of its amplitude does not (vibration_share).
   double vibration_share = 0.2;
 
+  /// Variance of the white noise of one gyroscope reading, per axis [rad^2/s^2], where readings
+  /// come every `period` [s].
+  double gyroscopeVariance(double period) const {
+    return gyroscope_noise * gyroscope_noise / period;
+  }
+
   /// Throws InputError naming the first value that is not positive and finite.
   void validate() const;
 };

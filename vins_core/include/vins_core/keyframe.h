@@ -29,6 +29,9 @@ struct Keyframe {
   Eigen::Matrix<double, 6, 6> covariance =
       Eigen::Matrix<double, 6, 6>::Zero();  ///< of T_wb: position [m], rotation [rad], right
   std::vector<KeyframePoint> points;
+  /// Counts the frames that the odometry has been in. A reset that carries the last state over
+  /// begins a sequence in the same world; a restart begins one at a new origin.
+  std::uint32_t world = 0;
 };
 
 /// The pose with which a keyframe left the estimator's window: its last word on it.

@@ -31,8 +31,9 @@ struct Odometry {
   Stamp stamp = 0;                                               ///< the image's [ns]
   NavState state;                                                ///< in the odometry's world
   Eigen::Vector3d angular_velocity_b = Eigen::Vector3d::Zero();  ///< free of bias [rad/s]
-  Matrix15d covariance = Matrix15d::Zero();                      ///< of `state`, by ErrorState
-  std::uint32_t sequence = 0;  ///< rises when the estimator resets
+  double angular_velocity_variance = 0.0;    ///< of the white noise in it, per axis [rad^2/s^2]
+  Matrix15d covariance = Matrix15d::Zero();  ///< of `state`, by ErrorState
+  std::uint32_t sequence = 0;                ///< rises when the estimator resets
 };
 
 /// What one frame's work was.

@@ -24,7 +24,7 @@ void Propagator::setState(Stamp stamp, const NavState& state, const Matrix15d& c
   if (!isFinite(state) || !covariance.allFinite()) return;
   if (solved_ && stamp < *solved_) return;
   solved_ = stamp;
-  current_ = {stamp, state, Eigen::Vector3d::Zero(), covariance, 0.0};
+  current_ = {stamp, state, Eigen::Vector3d::Zero(), 0.0, covariance, 0.0};
   while (samples_.size() > 1 && samples_[1].stamp <= stamp) samples_.pop_front();
   replay();
 }
@@ -33,6 +33,7 @@ std::optional<PropagatedState> Propagator::addImu(const ImuSample& sample) {
   if (!sample.isFinite()) return std::nullopt;
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return std::nullopt;
   samples_.push_back(sample);
+  period_.add(sample.stamp);
   boundBuffer();
   if (!solved_ || sample.stamp < *solved_) return std::nullopt;
   advanceTo(samples_.size() - 1);
@@ -58,7 +59,13 @@ void Propagator::advanceTo(std::size_t index) {
   step(from, to, toSeconds(to.stamp - current_.stamp));
   current_.stamp = to.stamp;
   current_.horizon = toSeconds(to.stamp - *solved_);
-  current_.angular_velocity_b = to.angular_velocity - current_.state.gyroscope_bias;
+  noteAngularVelocity(to);
+}
+
+void Propagator::noteAngularVelocity(const ImuSample& sample) {
+  current_.angular_velocity_b = sample.angular_velocity - current_.state.gyroscope_bias;
+  const std::optional<double> period = period_.seconds();
+  if (period) current_.angular_velocity_variance = noise_.gyroscopeVariance(*period);
 }
 
 void Propagator::step(const ImuSample& from, const ImuSample& to, double dt) {
@@ -96,12 +103,21 @@ void Propagator::propagateCovariance(double dt, const Eigen::Vector3d& f_w,
   F.block<3, 3>(kVelocity, kGyrBias) = -0.5 * dt * J_v_theta;
   F.block<3, 3>(kPosition, kGyrBias) = -0.25 * dt * dt * J_v_theta;
   Matrix15d& P = current_.covariance;
-  P = F * P * F.transpose();
-  const auto squared = [dt](double density) { return density * density * dt; };
-  P.diagonal().segment<3>(kRotation).array() += squared(noise_.gyroscope_noise);
-  P.diagonal().segment<3>(kVelocity).array() += squared(noise_.accelerometer_noise);
-  P.diagonal().segment<3>(kAccBias).array() += squared(noise_.accelerometer_walk);
-  P.diagonal().segment<3>(kGyrBias).array() += squared(noise_.gyroscope_walk);
+  P = F * P * F.transpose() + stepNoise(dt, F);
+}
+
+Matrix15d Propagator::stepNoise(double dt, const Matrix15d& F) const {
+  // An error of a step's mean reading acts as the opposite error of the bias does: on the position
+  // too, and with what that has in common with the velocity.
+  const Eigen::Matrix<double, 9, 3> G_acc = F.block<9, 3>(0, kAccBias);
+  const Eigen::Matrix<double, 9, 3> G_gyr = F.block<9, 3>(0, kGyrBias);
+  const auto squared = [](double density) { return density * density; };
+  Matrix15d Q = Matrix15d::Zero();
+  Q.topLeftCorner<9, 9>() = squared(noise_.accelerometer_noise) / dt * G_acc * G_acc.transpose() +
+                            squared(noise_.gyroscope_noise) / dt * G_gyr * G_gyr.transpose();
+  Q.diagonal().segment<3>(kAccBias).array() += squared(noise_.accelerometer_walk) * dt;
+  Q.diagonal().segment<3>(kGyrBias).array() += squared(noise_.gyroscope_walk) * dt;
+  return Q;
 }
 
 void Propagator::boundBuffer() {
@@ -113,6 +129,7 @@ void Propagator::boundBuffer() {
 
 void Propagator::reset() {
   samples_.clear();
+  period_ = {};
   solved_.reset();
   current_ = {};
 }

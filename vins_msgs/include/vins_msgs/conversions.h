@@ -215,6 +215,7 @@ inline Keyframe toMsg(const vins::Keyframe& keyframe) {
   copyTo(keyframe.covariance, message.covariance);
   message.points.reserve(keyframe.points.size());
   for (const auto& point : keyframe.points) message.points.push_back(toMsg(point));
+  message.world = keyframe.world;
   return message;
 }
 
@@ -232,6 +233,7 @@ inline vins::Keyframe fromMsg(const Keyframe& message) {
   for (std::size_t i = 0; i < message.points.size(); ++i) {
     keyframe.points.push_back(fromMsg(message.points[i], reader.inside("points", i)));
   }
+  keyframe.world = message.world;
   return keyframe;
 }
 

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "pose_graph/graph/map_from_odom.h"
 #include "vins_core/loop_match.h"
 #include "vins_core/pose.h"
 #include "vins_core/time.h"
@@ -98,10 +99,12 @@ class KeyframeGraph {
   /// restore() does; the graph is then as it was.
   void addStored(const std::vector<KeyframeVertex>& vertices, const std::vector<LoopEdge>& loops);
 
-  /// Appends a keyframe to its sequence; its map pose follows from its sequence's drift. Throws
-  /// InputError where the id is there already, the stamp does not rise in the sequence, or the
-  /// pose holds no finite numbers.
-  void addKeyframe(std::int64_t id, SequenceNumber sequence, Stamp stamp, const Pose& T_wb);
+  /// Appends a keyframe to its sequence; its map pose follows from its sequence's drift. A new
+  /// sequence whose odometry's `world` (Keyframe::world) an earlier one had too begins with the
+  /// drift of that one; nullopt is a world of its own. Throws InputError where the id is there
+  /// already, the stamp does not rise in the sequence, or the pose holds no finite numbers.
+  void addKeyframe(std::int64_t id, SequenceNumber sequence, Stamp stamp, const Pose& T_wb,
+                   std::optional<std::uint32_t> world = std::nullopt);
 
   /// The odometry's last word on a keyframe: its map pose is carried along. False: not there.
   bool updateOdometry(std::int64_t id, const Pose& T_wb);
@@ -128,6 +131,18 @@ class KeyframeGraph {
   /// map <- odometry world of a sequence, at its newest keyframe, yaw and translation only: what
   /// "map -> odom" is made of. Nothing for an unknown sequence.
   std::optional<Pose> drift(SequenceNumber sequence) const;
+
+  /// The same as drift() with its covariance: that of the loop by which the sequence joined its
+  /// component, or of the sequence that it carries on. What later optimizations gain is not
+  /// counted.
+  std::optional<MapFromOdom> mapFromOdom(SequenceNumber sequence) const;
+
+  /// Whether a sequence has begun in a world that no earlier sequence had.
+  bool beginsWorld(SequenceNumber sequence) const;
+
+  /// Moves a sequence, and what has joined it, to another place. Does nothing and returns false
+  /// where it is unknown, or has joined an older one, whose frame it shares.
+  bool placeSequence(SequenceNumber sequence, const MapFromOdom& place);
 
   /// The sequence whose frame this one shares: itself, or an older one. Throws std::out_of_range
   /// for an unknown sequence.
@@ -156,14 +171,20 @@ class KeyframeGraph {
  private:
   struct Sequence {
     SequenceNumber component = 0;
-    std::vector<std::int64_t> ids;  ///< from old to new
-    Pose T_mw;                      ///< at the newest keyframe there has been
+    std::vector<std::int64_t> ids;                     ///< from old to new
+    Pose T_mw;                                         ///< at the newest keyframe there has been
+    se3::Matrix6d covariance = se3::Matrix6d::Zero();  ///< of T_mw, see MapFromOdom
+    std::optional<std::uint32_t> world;                ///< of its odometry
   };
 
   void insert(KeyframeVertex vertex);
+  const Sequence* newestOf(std::optional<std::uint32_t> world) const;
   std::vector<LoopEdge>::iterator findLoop(std::int64_t query_id, std::int64_t old_id);
   void joinComponents(SequenceNumber older, SequenceNumber younger);
-  void moveComponent(SequenceNumber component, const Pose& T_new_old);
+  void moveComponent(SequenceNumber component, const MapFromOdom& T_new_old,
+                     SequenceNumber measured);
+  se3::Matrix6d covarianceOfCorrection(const KeyframeVertex& fixed, const KeyframeVertex& moved,
+                                       const Pose& T_new_old, const LoopEdge& edge) const;
   void noteDrift(Sequence* sequence) const;
   Pose correctionOf(const LoopEdge& edge) const;
   std::optional<std::int64_t> nearestNeighbour(const KeyframeVertex& vertex) const;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "vins_core/imu.h"
+#include "vins_core/sample_period.h"
 #include "vins_core/time.h"
 #include "vins_estimator/inertial/nav_state.h"
 
@@ -17,8 +18,9 @@ struct PropagatedState {
   Stamp stamp = 0;  ///< the IMU sample's [ns, the IMU's clock]
   NavState state;
   Eigen::Vector3d angular_velocity_b = Eigen::Vector3d::Zero();  ///< free of bias [rad/s]
-  Matrix15d covariance = Matrix15d::Zero();                      ///< of `state`, by ErrorState
-  double horizon = 0.0;                                          ///< since the solved state [s]
+  double angular_velocity_variance = 0.0;    ///< of the white noise in it, per axis [rad^2/s^2]
+  Matrix15d covariance = Matrix15d::Zero();  ///< of `state`, by ErrorState
+  double horizon = 0.0;                      ///< since the solved state [s]
 };
 
 /// Options of the propagator.
@@ -59,11 +61,15 @@ class Propagator {
   void step(const ImuSample& from, const ImuSample& to, double dt);
   void propagateCovariance(double dt, const Eigen::Vector3d& f_w, const Eigen::Matrix3d& R_wb,
                            const Eigen::Matrix3d& turn);
+  /// What one step's noise adds, where the transition is F.
+  Matrix15d stepNoise(double dt, const Matrix15d& F) const;
+  void noteAngularVelocity(const ImuSample& sample);
   void boundBuffer();
 
   ImuNoise noise_;
   PropagatorOptions options_;
   std::deque<ImuSample> samples_;  ///< from the last one not after the solved state
+  SamplePeriod period_;
   std::optional<Stamp> solved_;
   PropagatedState current_;
 };

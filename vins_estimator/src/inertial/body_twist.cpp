@@ -1,0 +1,24 @@
+#include "vins_estimator/inertial/body_twist.h"
+
+#include "vins_core/so3.h"
+
+namespace vins::estimator {
+
+BodyTwist bodyTwist(const NavState& state, const Matrix15d& covariance,
+                    const Eigen::Vector3d& angular_velocity_b, double angular_velocity_variance) {
+  const Eigen::Matrix3d R_bw = state.T_wb.rotation.conjugate().toRotationMatrix();
+  BodyTwist twist;
+  twist.linear_b = R_bw * state.v_w;
+  twist.angular_b = angular_velocity_b;
+  // (R exp(dtheta))^T (v + dv) = v_b + v_b x dtheta + R^T dv; the rate has the bias's error,
+  // negated.
+  Eigen::Matrix<double, 6, 15> J = Eigen::Matrix<double, 6, 15>::Zero();
+  J.block<3, 3>(0, kRotation) = so3::hat(twist.linear_b);
+  J.block<3, 3>(0, kVelocity) = R_bw;
+  J.block<3, 3>(3, kGyrBias) = -Eigen::Matrix3d::Identity();
+  twist.covariance = J * covariance * J.transpose();
+  twist.covariance.diagonal().tail<3>().array() += angular_velocity_variance;
+  return twist;
+}
+
+}  // namespace vins::estimator
