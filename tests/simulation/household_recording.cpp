@@ -130,7 +130,7 @@ FrameTiming drawTiming(Random* random) {
 
 ImageOptions drawImage(Random* random, bool large) {
   ImageOptions image;
-  image.lens_blur_px = (large ? 1.3 : 0.8) * random->uniform(0.85, 1.25);
+  image.lens_blur_px = (large ? 0.9 : 0.55) * random->uniform(0.85, 1.25);
   image.vignetting = random->uniform(0.15, 0.4);
   image.full_well_electrons = 6000.0;
   image.read_noise_electrons = 6.0;

@@ -26,11 +26,16 @@ Finish lacquered(double luminance, double gloss = 0.25) {
   finish.gloss = gloss;
   return finish;
 }
+/// Bedding: plain, or printed with a pattern.
+Finish bedding(Random& random, double luminance) {
+  const bool patterned = random.uniform() < 0.35;
+  return patterned ? Finish{TextureStyle::kClutter, kFineTexels} : cloth(luminance);
+}
 /// Something small with structure of its own: a book, a box, a mug.
 Finish thing(Random& random) {
   const bool print = random.uniform() < 0.5;
   return {print ? TextureStyle::kPrint : TextureStyle::kLacquer, kFineTexels, 0.0,
-          random.uniform(0.1, 0.7)};
+          random.uniform(0.05, 0.85)};
 }
 
 Pose at(double x, double y, double z, const Vector3d& turn = Vector3d::Zero()) {
@@ -174,14 +179,14 @@ void Household::addBedding(double x, double y) {
   for (const double side : {-0.22, 0.22}) {
     block(at(vary(x - 0.68, 0.05), y + side, vary(0.57, 0.02),
              {vary(0.0, 0.15), vary(-0.25, 0.15), vary(0.0, 0.3)}),
-          {0.17, 0.22, 0.06}, cloth(vary(0.6, 0.12)));
+          {0.17, 0.22, 0.06}, bedding(random(), vary(0.6, 0.12)));
   }
   const int folds = 5 + static_cast<int>(random().uniform(0.0, 4.0));
   for (int i = 0; i < folds; ++i) {
     const Vector3d turn(vary(0.0, 0.3), vary(0.0, 0.3), vary(0.0, 1.5));
     const Vector3d half(vary(0.28, 0.1), vary(0.22, 0.08), vary(0.06, 0.02));
     block(at(vary(x + 0.2, 0.55), vary(y, 0.28), vary(0.53, 0.04), turn), half,
-          cloth(vary(0.45, 0.2)));
+          bedding(random(), vary(0.45, 0.2)));
   }
 }
 
@@ -201,7 +206,7 @@ void Household::addBedside() {
   block(at(x, y, 0.44), {0.97, 0.47, 0.05}, cloth(vary(0.6, 0.1)));
   block(at(x - 1.03, y, 0.5), {0.03, 0.5, 0.5}, lacquered(0.08));
   addBedding(x, y);
-  addThings(x + 0.2, y, 0.56, 0.6, 0.35, 6);
+  addThings(x + 0.2, y, 0.56, 0.7, 0.38, 11);
   addNightstand(x + 1.3);
   addWallDecoration(0.0);
 }
@@ -281,7 +286,7 @@ void Household::addDoorside() {
 }
 
 void Household::addFloorThings() {
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < 13; ++i) {
     const Vector3d half(vary(0.12, 0.04), vary(0.08, 0.03), vary(0.02, 0.015));
     block(at(vary(0.0, 1.3), vary(0.0, 1.3), half.z(), {0, 0, vary(0.0, M_PI)}), half,
           i == 0 ? painted(0.7) : thing(random()));

@@ -47,6 +47,14 @@ Vector2d placeAwayFrom(const Vector2d& from, Random* random, double half_side) {
 
 }  // namespace
 
+Walk::Phase Walk::lookingAcross(const Phase& a, const Phase& b) {
+  const Vector2d to_middle = -0.5 * (a.from + a.to);
+  const auto across = [&](const Phase& leg) {
+    return to_middle.dot(Vector2d(std::cos(leg.yaw_from), std::sin(leg.yaw_from)));
+  };
+  return across(a) > across(b) ? a : b;
+}
+
 Walk::Walk(const GaitOptions& options, double begin, double end, std::uint64_t seed)
     : options_(options),
       begin_(begin),
@@ -64,8 +72,10 @@ Walk::Walk(const GaitOptions& options, double begin, double end, std::uint64_t s
   phase.yaw_to = random.uniform(0.0, 2.0 * M_PI);
   while (phase.end < end) {
     // A person films across the direction of travel as often as along it.
-    const double look = random.uniform(-75.0, 75.0) * kDegree;
-    const Phase leg = walkTo(phase, placeAwayFrom(phase.to, &random, options.half_side), look);
+    const Vector2d place = placeAwayFrom(phase.to, &random, options.half_side);
+    const double look = random.uniform(-75.0, 75.0), other = random.uniform(-75.0, 75.0);
+    const Phase leg =
+        lookingAcross(walkTo(phase, place, look * kDegree), walkTo(phase, place, other * kDegree));
     const double turn = std::remainder(leg.yaw_from - phase.yaw_to, 2.0 * M_PI);
     Phase pause = phase;
     pause.from = pause.to;

@@ -19,7 +19,7 @@ struct GaitOptions {
   double lateral_sway = 0.018;        ///< amplitude, at half the step frequency [m]
   double hand_height = 1.35;          ///< of the device above the floor [m]
   double half_side = 0.72;            ///< legs end within this distance of the middle [m]
-  double max_turn_rate = 1.0;         ///< of turns on the spot [rad/s]
+  double max_turn_rate = 0.8;         ///< of turns on the spot [rad/s]
   double elevation = -0.30;           ///< of the optical axis on average [rad]
   double tremor_acceleration = 0.12;  ///< root mean square per axis [m/s^2]
   double tremor_rate = 0.03;          ///< root mean square per axis [rad/s]
@@ -48,6 +48,8 @@ class Walk {
     double yaw_to = 0.0;    ///< [rad]
   };
   Phase walkTo(const Phase& last, const Eigen::Vector2d& place, double look) const;
+  /// The leg that looks more across the room than at the wall nearby.
+  static Phase lookingAcross(const Phase& a, const Phase& b);
   const Phase& phaseAt(double t) const;
   /// The time in the phases: it slows down to a halt before the end.
   double walkingTime(double t) const;
