@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/random.h"
-
 namespace vins::simulation {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRamp = 0.7;         ///< in which a leg reaches its full speed [s]
-constexpr double kSettle = 2.0;       ///< in which the motion begins and ends [s]
-constexpr double kShortestLeg = 0.7;  ///< [m]
+constexpr double kRamp = 0.5;           ///< in which a leg reaches its full speed [s]
+constexpr double kSettle = 2.0;         ///< in which the motion begins and ends [s]
+constexpr double kShortestLeg = 0.7;    ///< [m]
+constexpr double kSidestepShare = 0.5;  ///< of the legs
 constexpr double kDegree = M_PI / 180.0;
 
 /// Integral of smoothStep(t, ramp): the way of a speed that rises to 1.
@@ -66,41 +65,54 @@ Walk::Walk(const GaitOptions& options, double begin, double end, std::uint64_t s
       slow_(seed, "walk tremor slow", 4.0, 8.0) {
   Random random(seed, "walk");
   step_phase_ = random.uniform(0.0, 2.0 * M_PI);
-  Phase phase;
-  phase.begin = phase.end = begin;
-  phase.to = anyPlace(&random, options.half_side);
-  phase.yaw_to = random.uniform(0.0, 2.0 * M_PI);
-  while (phase.end < end) {
-    // A person films across the direction of travel as often as along it.
-    const Vector2d place = placeAwayFrom(phase.to, &random, options.half_side);
-    const double look = random.uniform(-75.0, 75.0), other = random.uniform(-75.0, 75.0);
-    const Phase leg =
-        lookingAcross(walkTo(phase, place, look * kDegree), walkTo(phase, place, other * kDegree));
-    const double turn = std::remainder(leg.yaw_from - phase.yaw_to, 2.0 * M_PI);
-    Phase pause = phase;
-    pause.from = pause.to;
-    pause.yaw_from = phase.yaw_to;
-    pause.yaw_to = phase.yaw_to + turn;
-    pause.begin = phase.end;
-    const double turning = 1.875 * std::abs(turn) / options.max_turn_rate;
-    pause.end = pause.begin + std::max(turning, random.uniform(0.3, 1.8));
-    phases_.push_back(pause);
-    phase = leg;
-    phase.begin = pause.end;
-    phase.end = phase.begin + durationOfLeg((leg.to - leg.from).norm(), options.walking_speed);
-    phase.yaw_from = pause.yaw_to;
-    phase.yaw_to = pause.yaw_to + random.uniform(-35.0, 35.0) * kDegree;
-    phases_.push_back(phase);
+  Phase last;
+  last.begin = last.end = begin;
+  last.to = anyPlace(&random, options.half_side);
+  last.yaw_to = random.uniform(0.0, 2.0 * M_PI);
+  while (last.end < end) {
+    const Phase leg = nextLeg(last, &random);
+    phases_.push_back(turnTowards(leg.yaw_from, last, &random));
+    last = startedAfter(phases_.back(), leg, &random);
+    phases_.push_back(last);
   }
 }
 
-Walk::Phase Walk::walkTo(const Phase& last, const Vector2d& place, double look) const {
+Walk::Phase Walk::nextLeg(const Phase& last, Random* random) const {
+  const Vector2d place = placeAwayFrom(last.to, random, options_.half_side);
+  const Vector2d way = place - last.to;
+  // A person films across the direction of travel as often as along it.
+  const double look = random->uniform(-75.0, 75.0), other = random->uniform(-75.0, 75.0);
   Phase leg;
   leg.from = last.to;
   leg.to = place;
-  const Vector2d way = place - last.to;
-  leg.yaw_from = std::atan2(way.y(), way.x()) + look;
-  return leg;
+  leg.yaw_from = std::atan2(way.y(), way.x()) + look * kDegree;
+  Phase alternative = leg;
+  alternative.yaw_from += (other - look) * kDegree;
+  // Or steps aside or back without turning.
+  if (random->uniform() < kSidestepShare) leg.yaw_from = alternative.yaw_from = last.yaw_to;
+  return lookingAcross(leg, alternative);
+}
+
+Walk::Phase Walk::turnTowards(double yaw, const Phase& last, Random* random) const {
+  const double turn = std::remainder(yaw - last.yaw_to, 2.0 * M_PI);
+  // The peak of a smooth step's speed is 15 / 8 of its mean.
+  const double turning = 15.0 / 8.0 * std::abs(turn) / options_.max_turn_rate;
+  Phase phase;
+  phase.begin = last.end;
+  phase.end = phase.begin + std::max(turning, random->uniform(0.2, 1.5));
+  phase.from = phase.to = last.to;
+  phase.yaw_from = last.yaw_to;
+  phase.yaw_to = last.yaw_to + turn;
+  return phase;
+}
+
+Walk::Phase Walk::startedAfter(const Phase& turn, const Phase& leg, Random* random) const {
+  Phase started = leg;
+  started.begin = turn.end;
+  started.end = turn.end + durationOfLeg((leg.to - leg.from).norm(), options_.walking_speed);
+  started.yaw_from = turn.yaw_to;
+  started.yaw_to = turn.yaw_to + random->uniform(-35.0, 35.0) * kDegree;
+  return started;
 }
 
 const Walk::Phase& Walk::phaseAt(double t) const {
@@ -129,14 +141,14 @@ void Walk::addGait(double t, const Phase& phase, DesignedPose* pose) const {
   if (active <= 0.0) return;
   const double step = options_.walking_speed / options_.step_frequency;
   const double leg = options_.leg_length;
-  const double bob = 0.5 * (leg - std::sqrt(leg * leg - 0.25 * step * step));
+  const double bob = options_.arm_share * 0.5 * (leg - std::sqrt(leg * leg - 0.25 * step * step));
   // Half a period of the pace's variation shifts the phase by a few percent of a step.
   const double angle =
       2.0 * M_PI * options_.step_frequency * t + step_phase_ + 0.6 * pace_.at(0, t);
   const Vector2d ahead = (phase.to - phase.from).normalized();
   const Vector3d forward(ahead.x(), ahead.y(), 0.0), left(-ahead.y(), ahead.x(), 0.0);
   // The second harmonic is the heel's strike.
-  const double up = bob * std::cos(angle) + 0.25 * bob * std::cos(2.0 * angle + 0.8);
+  const double up = bob * std::cos(angle) + 0.12 * bob * std::cos(2.0 * angle + 0.8);
   pose->position_w += active * up * Vector3d::UnitZ();
   pose->position_w += active * options_.lateral_sway * std::sin(0.5 * angle) * left;
   pose->position_w += active * 0.5 * bob * std::sin(angle) * forward;

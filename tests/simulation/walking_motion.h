@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "simulation/motion_design.h"
+#include "simulation/random.h"
 
 namespace vins::simulation {
 
@@ -14,12 +15,13 @@ namespace vins::simulation {
 /// the tremor is that of a recorded walk's IMU.
 struct GaitOptions {
   double step_frequency = 1.8;        ///< [Hz]
-  double walking_speed = 0.55;        ///< between the ramps of a leg [m/s]
+  double walking_speed = 0.75;        ///< between the ramps of a leg [m/s]
   double leg_length = 0.9;            ///< of the inverted pendulum [m]
+  double arm_share = 0.7;             ///< of the body's bob that the arms leave to the device
   double lateral_sway = 0.018;        ///< amplitude, at half the step frequency [m]
   double hand_height = 1.35;          ///< of the device above the floor [m]
-  double half_side = 0.72;            ///< legs end within this distance of the middle [m]
-  double max_turn_rate = 0.8;         ///< of turns on the spot [rad/s]
+  double half_side = 0.82;            ///< legs end within this distance of the middle [m]
+  double max_turn_rate = 1.2;         ///< of turns on the spot [rad/s]
   double elevation = -0.30;           ///< of the optical axis on average [rad]
   double tremor_acceleration = 0.12;  ///< root mean square per axis [m/s^2]
   double tremor_rate = 0.03;          ///< root mean square per axis [rad/s]
@@ -47,7 +49,10 @@ class Walk {
     double yaw_from = 0.0;  ///< [rad]
     double yaw_to = 0.0;    ///< [rad]
   };
-  Phase walkTo(const Phase& last, const Eigen::Vector2d& place, double look) const;
+  Phase nextLeg(const Phase& last, Random* random) const;
+  /// A turn on the spot, or a pause.
+  Phase turnTowards(double yaw, const Phase& last, Random* random) const;
+  Phase startedAfter(const Phase& turn, const Phase& leg, Random* random) const;
   /// The leg that looks more across the room than at the wall nearby.
   static Phase lookingAcross(const Phase& a, const Phase& b);
   const Phase& phaseAt(double t) const;
