@@ -68,6 +68,7 @@ class Household {
   void addLights();
   void addJoints();
   void addSkirting();
+  void addMarks();
   void addBedside();
   void addBedding(double x, double y);
   void addNightstand(double x);
@@ -106,6 +107,7 @@ Scene Household::build() {
   for (int side = 0; side < 4; ++side) {
     builder_.beginSection("side " + std::to_string(side), at(0, 0, 0, {0, 0, side * M_PI_2}));
     addSkirting();
+    addMarks();
     (this->*sides[static_cast<std::size_t>(side)])();
   }
   builder_.beginSection("floor");
@@ -134,6 +136,25 @@ void Household::addRoom() {
 }
 
 void Household::addSkirting() { onWall(0.0, 0.04, kHalf, 0.04, 0.012, painted(wall_ - 0.10)); }
+
+/// Hooks, stickers, stains and a cable.
+void Household::addMarks() {
+  for (int i = 0; i < 7; ++i) {
+    const double size = random().uniform(0.008, 0.03);
+    const double shade = wall_ + (random().uniform() < 0.5 ? 0.14 : -0.2);
+    onWall(vary(0.0, 1.9), vary(1.2, 0.9), size, random().uniform(0.5, 1.5) * size,
+           0.003 + 0.0005 * i, painted(shade));
+  }
+  double x = vary(0.0, 1.5), z = 0.3;
+  for (int i = 0; i < 8; ++i) {
+    const double next_x = x + vary(0.0, 0.12), next_z = z + vary(-0.02, 0.06);
+    const Vector3d way(next_x - x, 0.0, next_z - z), along = way.normalized();
+    builder_.addPanel({0.5 * (x + next_x), kHalf - 0.008, 0.5 * (z + next_z)}, along,
+                      along.cross(Vector3d::UnitY()), 0.5 * way.norm(), 0.004, painted(0.75));
+    x = next_x;
+    z = next_z;
+  }
+}
 
 void Household::addJoints() {
   for (double x = vary(-1.6, 0.2); x < kHalf; x += random().uniform(0.5, 0.9)) {
@@ -293,7 +314,7 @@ void Household::addFloorThings() {
   }
   if (random().uniform() < 0.5) {
     builder_.addPanel({vary(0.0, 0.3), vary(0.0, 0.3), 0.004}, Vector3d::UnitX(), Vector3d::UnitY(),
-                      0.8, 0.55, cloth(vary(0.3, 0.15)));
+                      0.8, 0.55, bedding(random(), vary(0.3, 0.15)));
   }
 }
 

@@ -74,7 +74,7 @@ cv::Mat paintWood(Random& random, const TextureOptions& options, double luminanc
       const double share = place - left;
       const double value = (1.0 - share) * grain.at<float>(y, left) +
                            share * grain.at<float>(y, (left + 1) % grain.cols);
-      image.at<float>(y, x) = static_cast<float>(row * (1.0 + 0.06 * value));
+      image.at<float>(y, x) = static_cast<float>(row * (1.0 + 0.10 * value));
     }
   }
   return image;

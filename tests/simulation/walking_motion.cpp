@@ -9,7 +9,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRamp = 0.5;           ///< in which a leg reaches its full speed [s]
+constexpr double kRamp = 0.7;           ///< in which a leg reaches its full speed [s]
 constexpr double kSettle = 2.0;         ///< in which the motion begins and ends [s]
 constexpr double kShortestLeg = 0.7;    ///< [m]
 constexpr double kSidestepShare = 0.5;  ///< of the legs
