@@ -37,12 +37,12 @@ double clampedNormal(Random* random, double deviation) {
   return deviation * std::clamp(random->normal(), -2.0, 2.0);
 }
 
-/// Scales off by `deviation` and axes turned against each other by a few milliradians.
-Eigen::Matrix3d gainError(Random* random, double deviation) {
+/// Scales off by up to a percent and axes turned against each other by a milliradian or two.
+Eigen::Matrix3d gainError(Random* random) {
   Eigen::Matrix3d gain = Eigen::Matrix3d::Identity();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      gain(row, column) += clampedNormal(random, row == column ? deviation : 0.003);
+      gain(row, column) += clampedNormal(random, row == column ? 0.005 : 0.001);
     }
   }
   return gain;
@@ -55,8 +55,8 @@ ImuOptions drawImu(Random* random, const ImuNoise& sheet, double time_offset) {
   imu.time_offset = time_offset;
   imu.initial_accelerometer_bias = 0.08 * random->normal3();
   imu.initial_gyroscope_bias = 0.008 * random->normal3();
-  imu.accelerometer_gain = gainError(random, 0.01);
-  imu.gyroscope_gain = gainError(random, 0.01);
+  imu.accelerometer_gain = gainError(random);
+  imu.gyroscope_gain = gainError(random);
   const double rates[] = {62.5, 100.0, 250.0};
   imu.accelerometer_rate = rates[static_cast<int>(random->uniform(0.0, 3.0))];
   imu.stamp_jitter_s = random->uniform(0.0, 4e-4);

@@ -42,6 +42,12 @@ TEST(HouseholdRecording, HandsOutWhatAUserHas) {
     EXPECT_GT(turn, 0.1 * kDegree) << seed;
     EXPECT_LE((user.T_bc[0].position - truth.T_bc[0].position).norm(), 0.0101) << seed;
     EXPECT_EQ(truth.time_offset, options.own_rig->imu.time_offset);
+    const ImuOptions& imu = options.own_rig->imu;
+    for (const Eigen::Matrix3d& gain : {imu.accelerometer_gain, imu.gyroscope_gain}) {
+      const double scale_error = (gain.diagonal().array() - 1.0).abs().maxCoeff();
+      EXPECT_LE(scale_error, 0.0101) << seed;
+      EXPECT_GT(scale_error, 0.0005) << seed;
+    }
     EXPECT_LE(user.noise.gyroscope_noise, 2.0 * truth.noise.gyroscope_noise + 1e-12);
   }
 }
