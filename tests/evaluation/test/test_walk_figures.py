@@ -124,6 +124,11 @@ class ReadWalkTest(unittest.TestCase):
     def test_resets_are_counted(self):
         self.assertEqual(self.run_with(first=600, sequence_at=100, td=0.0).resets, 1)
 
+    def test_one_pose_after_the_end_of_the_truth_has_no_accuracy(self):
+        figures = self.run_with(first=len(self.truth) - 1, sequence_at=10**6, td=0.0)
+        self.assertIsNone(figures.ate_percent)
+        self.assertIsNone(figures.nees_position)
+
     def test_a_run_that_never_started(self):
         self.write("estimator.csv", HEADER)
         figures = walk_figures.read_walk(self.folder, self.rig)

@@ -88,6 +88,8 @@ def read_walk(run_path, true_rig_path):
 def _accuracy(truth, estimate):
     """Metres of the true path, and the ATE in percent of it; None where there is no answer."""
     path = float(truth.path_lengths()[-1]) if len(truth) else 0.0
+    if len(truth) < 2:
+        return path, None
     try:
         fitted = alignment.align("posyaw", truth.positions, estimate.positions).apply(estimate)
     except EvaluationError:
