@@ -208,11 +208,12 @@ void BandRenderer::renderRow(int u, int v) {
   std::array<float, kTileSize> sums{};
   for (int sample = 0; sample < plan_.samples; ++sample) {
     const HaloPacket& hits = hitsOf(v, sample);
+    const PanelView* const view = views(v, sample);
     for (int i = 0; i < columns; ++i) {
       const Pixel& pixel = pixels[i];
       if (pixel.mixed || pixel.panel < 0) continue;
-      sums[i] +=
-          renderer_.paints_[pixel.panel].luminance(hits.s[i + 1], hits.t[i + 1], pixel.footprint);
+      sums[i] += renderer_.paints_[pixel.panel].luminance(view[pixel.panel], hits.s[i + 1],
+                                                          hits.t[i + 1], pixel.footprint);
     }
   }
   float* const out = luminance_.ptr<float>(v) + u;
@@ -243,7 +244,7 @@ float BandRenderer::mixedPixel(int u, int v) const {
           footprint(view[panel], panel, bearing, 0.5F * per_column, 0.5F * per_row);
       footprint_panel = panel;
     }
-    sum += renderer_.paints_[panel].luminance(hit.s[0], hit.t[0], footprint_of_panel);
+    sum += renderer_.paints_[panel].luminance(view[panel], hit.s[0], hit.t[0], footprint_of_panel);
   }
   return sum / static_cast<float>(rays * plan_.samples);
 }

@@ -7,6 +7,7 @@
 
 #include "simulation/closed_path.h"
 #include "simulation/motion_design.h"
+#include "simulation/walking_motion.h"
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
 
@@ -24,6 +25,7 @@ struct Design {
   std::function<DesignedPose(double t)> at;
   double knot_interval = 0.1;  ///< [s]
   bool of_camera = false;      ///< positions are the camera's, not the body's
+  bool leans = true;           ///< into its accelerations, as a multirotor does
 };
 
 /// The task: from when to when to move, and with which random numbers.
@@ -178,6 +180,15 @@ Design staticThenMove(const Task& task) {
   return design;
 }
 
+Design walk(const Task& task) {
+  const auto walk = std::make_shared<Walk>(GaitOptions{}, task.begin, task.end, task.seed);
+  Design design;
+  design.at = [walk](double t) { return walk->at(t); };
+  design.knot_interval = 0.0125;  // a hand trembles up to 13 Hz
+  design.leans = false;
+  return design;
+}
+
 struct Named {
   const char* name;
   const char* scene;
@@ -193,6 +204,7 @@ constexpr Named kTrajectories[] = {
     {"pure_rotation", "room", pureRotation},
     {"static_then_move", "hall", staticThenMove},
     {"fast", "room", fast},
+    {"walk", "household", walk},
 };
 
 const Named& find(const std::string& name) {
@@ -220,7 +232,8 @@ Eigen::Quaterniond lean(const Design& design, double t) {
 /// T_wb of a designed pose.
 Pose bodyPose(const Design& design, double t, const Pose& T_bc) {
   const DesignedPose designed = design.at(t);
-  const Eigen::Quaterniond R_wc = lean(design, t) * designed.cameraRotation();
+  const Eigen::Quaterniond R_lean = design.leans ? lean(design, t) : Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond R_wc = R_lean * designed.cameraRotation();
   const Eigen::Quaterniond R_wb = (R_wc * T_bc.rotation.conjugate()).normalized();
   const Vector3d lever = design.of_camera ? R_wb * T_bc.position : Vector3d::Zero();
   return {R_wb, designed.position_w - lever};

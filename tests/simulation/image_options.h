@@ -11,6 +11,14 @@ struct GainStep {
   double factor = 1.0;  ///< the gain is multiplied by this
 };
 
+/// What an automatic exposure has chosen at a time.
+struct ExposureSetting {
+  double t_s = 0.0;         ///< [s]
+  double exposure_s = 0.0;  ///< the shutter's time [s]
+  double light = 1.0;       ///< luminance 1 fills the sensor to this share of white
+  double gain = 1.0;        ///< of the electronics, on top of ImageOptions::gain
+};
+
 /// From begin_s on, until just before end_s [s].
 struct TimeInterval {
   double begin_s = 0.0;
@@ -22,6 +30,8 @@ struct ImageOptions {
   /// The shutter's time [s]. A global shutter's image at stamp t collects light from
   /// t - exposure / 2 to t + exposure / 2.
   double exposure_s = 0.005;
+  /// The settings of an automatic exposure by rising time, linear between, in place of exposure_s.
+  std::vector<ExposureSetting> exposures;
   /// Time from the first row to the one below the last [s]; 0 is a global shutter. The stamp t is
   /// the middle of the exposure of the first row: the middle for row r is t + r / height * readout
   /// (VINS-Mono's rolling_shutter_tr).
@@ -43,6 +53,10 @@ struct ImageOptions {
   double full_well_electrons = 10000.0;
   /// Standard deviation of the electronics' noise [grey values], at any gain.
   double read_noise_dn = 0.7;
+  /// Standard deviation of the pixels' own noise [electrons], which grows with the gain.
+  double read_noise_electrons = 0.0;
+  /// Of the JPEG through which the image goes, 1 to 100; 0: none.
+  int jpeg_quality = 0;
   /// Images with a stamp in one of these see nothing: black but for the read noise.
   std::vector<TimeInterval> blackouts;
   /// Worker threads; the images do not depend on it.

@@ -51,6 +51,20 @@ ImageSensor::ImageSensor(const ImageOptions& options, std::uint64_t seed, const 
   }
 }
 
+ExposureSetting ImageSensor::settingAt(double t_s) const {
+  const std::vector<ExposureSetting>& settings = options_.exposures;
+  if (settings.empty()) return {t_s, options_.exposure_s, 1.0, 1.0};
+  const auto next = std::upper_bound(settings.begin(), settings.end(), t_s,
+                                     [](double t, const ExposureSetting& s) { return t < s.t_s; });
+  if (next == settings.begin()) return settings.front();
+  if (next == settings.end()) return settings.back();
+  const ExposureSetting &a = *(next - 1), &b = *next;
+  const double share = (t_s - a.t_s) / (b.t_s - a.t_s);
+  const auto between = [share](double from, double to) { return from + share * (to - from); };
+  return {t_s, between(a.exposure_s, b.exposure_s), between(a.light, b.light),
+          between(a.gain, b.gain)};
+}
+
 double ImageSensor::gainAt(double t_s) const {
   double waves = 0.0;
   for (std::size_t i = 0; i < drift_phases_.size(); ++i) {
@@ -71,14 +85,15 @@ bool ImageSensor::isBlackout(double t_s) const {
 
 cv::Mat ImageSensor::expose(const cv::Mat& luminance, double t_s, std::uint64_t frame_index) const {
   cv::Mat image(luminance.size(), CV_8UC1);
-  const double gain = gainAt(t_s);
+  ExposureSetting setting = settingAt(t_s);
+  setting.gain *= gainAt(t_s);
   const int blocks = (luminance.rows + kRowsPerStream - 1) / kRowsPerStream;
   parallelFor(blocks, options_.threads, [&](int block) {
     Random random(seed_,
                   stream_ + " noise " + std::to_string(frame_index) + " " + std::to_string(block));
     const int first = block * kRowsPerStream;
     for (int row = first; row < std::min(first + kRowsPerStream, luminance.rows); ++row) {
-      exposeRow(blurredRow(luminance, row), row, gain, random, image);
+      exposeRow(blurredRow(luminance, row), row, setting, random, image);
     }
   });
   return image;
@@ -104,11 +119,15 @@ std::vector<float> ImageSensor::blurredRow(const cv::Mat& luminance, int row) co
   return blurred;
 }
 
-void ImageSensor::exposeRow(const std::vector<float>& light, int row, double gain, Random& random,
-                            cv::Mat& image) const {
+void ImageSensor::exposeRow(const std::vector<float>& light, int row,
+                            const ExposureSetting& setting, Random& random, cv::Mat& image) const {
+  const double gain = setting.gain;
   const double full_well = options_.full_well_electrons;
   const double photon_variance = full_well > 0.0 ? gain * gain * kWhite * kWhite / full_well : 0.0;
-  const double read_variance = options_.read_noise_dn * options_.read_noise_dn;
+  const double pixel_noise =
+      full_well > 0.0 ? gain * kWhite * options_.read_noise_electrons / full_well : 0.0;
+  const double read_variance =
+      options_.read_noise_dn * options_.read_noise_dn + pixel_noise * pixel_noise;
   const bool noisy = photon_variance > 0.0 || read_variance > 0.0;
   const double middle_x = 0.5 * (image.cols - 1), middle_y = 0.5 * (image.rows - 1);
   const double loss =
@@ -116,7 +135,7 @@ void ImageSensor::exposeRow(const std::vector<float>& light, int row, double gai
   std::uint8_t* const out = image.ptr<std::uint8_t>(row);
   for (int x = 0; x < image.cols; ++x) {
     const double dx = x - middle_x, dy = row - middle_y;
-    const double arriving = light[x] * (1.0 - loss * (dx * dx + dy * dy));
+    const double arriving = setting.light * light[x] * (1.0 - loss * (dx * dx + dy * dy));
     double grey = gain * kWhite * arriving;
     // Photon and read noise at once: the sum of two normal numbers is one.
     if (noisy) grey += std::sqrt(photon_variance * arriving + read_variance) * nearlyNormal(random);

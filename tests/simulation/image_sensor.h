@@ -19,6 +19,10 @@ class ImageSensor {
   /// `stream` names the noise, the same for the same seed. Throws InputError for bad options.
   ImageSensor(const ImageOptions& options, std::uint64_t seed, const std::string& stream);
 
+  /// Exposure, light and gain of the image stamped t_s; without an automatic exposure those of the
+  /// options.
+  ExposureSetting settingAt(double t_s) const;
+
   /// Gain of the image stamped t_s.
   double gainAt(double t_s) const;
   bool isBlackout(double t_s) const;
@@ -29,8 +33,9 @@ class ImageSensor {
 
  private:
   std::vector<float> blurredRow(const cv::Mat& luminance, int row) const;
-  void exposeRow(const std::vector<float>& light, int row, double gain, Random& random,
-                 cv::Mat& image) const;
+  /// `setting` has the whole gain.
+  void exposeRow(const std::vector<float>& light, int row, const ExposureSetting& setting,
+                 Random& random, cv::Mat& image) const;
 
   ImageOptions options_;
   std::uint64_t seed_;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
 
 namespace vins::simulation {
 namespace {
@@ -15,6 +18,12 @@ constexpr double kMotionPerSample = 1.25;
 constexpr int kMaxSamples = 12;
 /// Slack for points that lie on the surface themselves, relative and [m].
 constexpr double kOnSurface = 1e-6;
+
+cv::Mat throughJpeg(const cv::Mat& image, int quality) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  return cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+}
 
 }  // namespace
 
@@ -35,7 +44,8 @@ cv::Mat ImageSimulator::render(const Trajectory& T_wb, double t_s,
   const cv::Mat luminance = sensor_.isBlackout(t_s)
                                 ? cv::Mat::zeros(size.height, size.width, CV_32FC1)
                                 : renderer_.render(plan(T_wb, t_s), options_.threads);
-  return sensor_.expose(luminance, t_s, frame_index);
+  const cv::Mat image = sensor_.expose(luminance, t_s, frame_index);
+  return options_.jpeg_quality > 0 ? throughJpeg(image, options_.jpeg_quality) : image;
 }
 
 double ImageSimulator::timeOfRow(double t_s, double row) const {
@@ -70,7 +80,8 @@ bool ImageSimulator::isVisible(const Pose& T_wb, const Eigen::Vector3d& p_w, dou
 }
 
 double ImageSimulator::pixelMotion(const Pose& T_wb_begin, const Pose& T_wb_end,
-                                   const Eigen::Vector2d& pixel, double t_s) const {
+                                   const Eigen::Vector2d& pixel, double t_s,
+                                   double exposure_s) const {
   const auto bearing = camera_->unproject(pixel);
   if (!bearing) return 0.0;
   const Pose T_wc = T_wb_begin * T_bc_;
@@ -80,21 +91,21 @@ double ImageSimulator::pixelMotion(const Pose& T_wb_begin, const Pose& T_wb_end,
   Eigen::Vector3d p_w = T_wc.position + hit->distance * direction;
   if (hit->object >= 0) {
     const auto& pose_at = scene_->movingObjects()[hit->object].pose_at;
-    p_w = pose_at(t_s + options_.exposure_s) * (pose_at(t_s).inverse() * p_w);
+    p_w = pose_at(t_s + exposure_s) * (pose_at(t_s).inverse() * p_w);
   }
   const auto moved = project(T_wb_end, p_w);
   return moved ? (*moved - pixel).norm() : 0.0;
 }
 
-int ImageSimulator::exposureSamples(const Trajectory& T_wb, double t_s) const {
-  const double begin_s = t_s - 0.5 * options_.exposure_s;
-  const Pose begin = T_wb(begin_s), end = T_wb(begin_s + options_.exposure_s);
+int ImageSimulator::exposureSamples(const Trajectory& T_wb, double t_s, double exposure_s) const {
+  const double begin_s = t_s - 0.5 * exposure_s;
+  const Pose begin = T_wb(begin_s), end = T_wb(begin_s + exposure_s);
   const camera_model::ImageSize size = camera_->imageSize();
   double largest = 0.0;
   for (double v = 0.05; v < 1.0; v += 0.15) {
     for (double u = 0.05; u < 1.0; u += 0.1) {
       const Eigen::Vector2d pixel(u * size.width, v * size.height);
-      largest = std::max(largest, pixelMotion(begin, end, pixel, begin_s));
+      largest = std::max(largest, pixelMotion(begin, end, pixel, begin_s, exposure_s));
     }
   }
   if (largest < kStillMotion) return 1;
@@ -105,7 +116,8 @@ ExposurePlan ImageSimulator::plan(const Trajectory& T_wb, double t_s) const {
   ExposurePlan plan;
   plan.rolling = options_.rolling_shutter_readout_s > 0.0;
   const double middle_row = 0.5 * camera_->imageSize().height;
-  plan.samples = exposureSamples(T_wb, timeOfRow(t_s, middle_row));
+  const double exposure_s = sensor_.settingAt(t_s).exposure_s;
+  plan.samples = exposureSamples(T_wb, timeOfRow(t_s, middle_row), exposure_s);
   // n instants in the middles of n equal parts have 1 - 1 / n^2 of the variance of the whole
   // exposure; spread by the root of that they blur as much as the exposure does. For n = 2 these
   // are Gauss's points.
@@ -115,7 +127,7 @@ ExposurePlan ImageSimulator::plan(const Trajectory& T_wb, double t_s) const {
   for (int row = 0; row < rows; ++row) {
     for (int sample = 0; sample < plan.samples; ++sample) {
       const double share = spread * ((sample + 0.5) / n - 0.5);
-      const double sample_s = timeOfRow(t_s, row) + share * options_.exposure_s;
+      const double sample_s = timeOfRow(t_s, row) + share * exposure_s;
       plan.instants.push_back({T_wb(sample_s) * T_bc_, sample_s});
     }
   }

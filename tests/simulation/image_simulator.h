@@ -53,9 +53,9 @@ class ImageSimulator {
   bool isVisible(const Pose& T_wb, const Eigen::Vector3d& p_w, double t_s) const;
 
  private:
-  int exposureSamples(const Trajectory& T_wb, double t_s) const;
+  int exposureSamples(const Trajectory& T_wb, double t_s, double exposure_s) const;
   double pixelMotion(const Pose& T_wb_begin, const Pose& T_wb_end, const Eigen::Vector2d& pixel,
-                     double t_s) const;
+                     double t_s, double exposure_s) const;
   ExposurePlan plan(const Trajectory& T_wb, double t_s) const;
 
   std::shared_ptr<const Scene> scene_;

@@ -1,6 +1,8 @@
 #include "simulation/imu_simulator.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "simulation/random.h"
@@ -8,6 +10,8 @@
 
 namespace vins::simulation {
 namespace {
+
+using Eigen::Vector3d;
 
 constexpr int kSinusoids = 8;
 
@@ -48,19 +52,79 @@ Eigen::Vector3d oscillation(const Eigen::Vector3d& amplitude, double frequency, 
   return (amplitude.array() * angle.sin()).matrix();
 }
 
-/// The noise-free reading at a time of the trajectory.
-ImuSample idealSample(const TrajectorySpline& trajectory, double t, double gravity,
-                      const std::vector<Sinusoid>& sinusoids) {
-  const MotionState state = trajectory.at(t);
-  const Eigen::Vector3d g_w(0.0, 0.0, -gravity);
-  ImuSample sample;
-  sample.acceleration = state.T_wb.rotation.conjugate() * (state.acceleration_w - g_w);
-  sample.angular_velocity = state.angular_velocity_b;
-  for (const Sinusoid& s : sinusoids) {
-    sample.acceleration += oscillation(s.acceleration, s.frequency, t, s.acceleration_phase);
-    sample.angular_velocity += oscillation(s.angular_velocity, s.frequency, t, s.angular_phase);
+/// The reading without bias and noise, with the errors of scale and alignment.
+class IdealImu {
+ public:
+  IdealImu(const TrajectorySpline& trajectory, const ImuOptions& options, std::uint64_t seed)
+      : trajectory_(trajectory),
+        options_(options),
+        sinusoids_(makeSinusoids(options.vibrations, seed)) {}
+
+  /// At a stamp of the IMU's clock.
+  ImuSample at(Stamp stamp) const {
+    const double t = trajectory_.secondsAt(stamp) - options_.time_offset;
+    const MotionState state = trajectory_.at(t);
+    const Vector3d g_w(0.0, 0.0, -options_.noise.gravity);
+    ImuSample sample;
+    sample.stamp = stamp;
+    sample.acceleration = state.T_wb.rotation.conjugate() * (state.acceleration_w - g_w);
+    sample.angular_velocity = state.angular_velocity_b;
+    for (const Sinusoid& s : sinusoids_) {
+      sample.acceleration += oscillation(s.acceleration, s.frequency, t, s.acceleration_phase);
+      sample.angular_velocity += oscillation(s.angular_velocity, s.frequency, t, s.angular_phase);
+    }
+    sample.acceleration = options_.accelerometer_gain * sample.acceleration;
+    sample.angular_velocity = options_.gyroscope_gain * sample.angular_velocity;
+    return sample;
   }
-  return sample;
+
+ private:
+  const TrajectorySpline& trajectory_;
+  const ImuOptions& options_;
+  std::vector<Sinusoid> sinusoids_;
+};
+
+/// An accelerometer that samples at its own rate, read at other instants by interpolation.
+class OwnAccelerometer {
+ public:
+  OwnAccelerometer(const IdealImu& ideal, const ImuOptions& options, Stamp first, Stamp last,
+                   std::uint64_t seed)
+      : period_s_(1.0 / options.accelerometer_rate) {
+    Random random(seed, "accelerometer's own samples");
+    const double deviation =
+        options.noise_free ? 0.0 : options.noise.accelerometer_noise * std::sqrt(1.0 / period_s_);
+    begin_ = first - toNanoseconds(random.uniform(0.1, 0.9) * period_s_);
+    for (std::int64_t i = 0; samples_.empty() || stampOf(i - 1) < last; ++i) {
+      samples_.push_back(ideal.at(stampOf(i)).acceleration + deviation * random.normal3());
+    }
+  }
+
+  Vector3d at(Stamp stamp) const {
+    const double place = toSeconds(stamp - begin_) / period_s_;
+    const auto i = std::min(static_cast<std::size_t>(place), samples_.size() - 2);
+    const double share = place - static_cast<double>(i);
+    return (1.0 - share) * samples_[i] + share * samples_[i + 1];
+  }
+
+ private:
+  Stamp stampOf(std::int64_t i) const {
+    return begin_ + toNanoseconds(static_cast<double>(i) * period_s_);
+  }
+
+  double period_s_;
+  Stamp begin_ = 0;
+  std::vector<Vector3d> samples_;
+};
+
+/// Stamp of sample i; jitter is held to less than half a period, so that stamps rise.
+Stamp instantOf(std::int64_t i, Stamp first, const ImuOptions& options, Random* random) {
+  double t = static_cast<double>(i) / options.rate;
+  if (options.stamp_jitter_s > 0.0) {
+    const double most = 0.45 / options.rate;
+    const double jitter = std::clamp(options.stamp_jitter_s * random->normal(), -most, most);
+    if (i > 0) t += jitter;
+  }
+  return first + toNanoseconds(t);
 }
 
 void requireAtLeastZero(const std::string& name, double value) {
@@ -77,6 +141,11 @@ void ImuOptions::validate() const {
   if (!initial_accelerometer_bias.allFinite() || !initial_gyroscope_bias.allFinite()) {
     refuseOption("simulated IMU", "initial bias", NAN, "finite numbers");
   }
+  if (!accelerometer_gain.allFinite() || !gyroscope_gain.allFinite()) {
+    refuseOption("simulated IMU", "gain", NAN, "finite numbers");
+  }
+  requireAtLeastZero("accelerometer's own rate", accelerometer_rate);
+  requireAtLeastZero("jitter of stamps", stamp_jitter_s);
   noise.validate();
   for (const Vibration& vibration : vibrations) {
     requireAtLeastZero("vibration frequency", vibration.frequency);
@@ -94,6 +163,14 @@ std::ostream& operator<<(std::ostream& out, const ImuOptions& options) {
       << " m/s^2\n"
       << "initial gyroscope bias: " << options.initial_gyroscope_bias.transpose() << " rad/s\n"
       << "time offset: " << options.time_offset << " s\n";
+  if (options.accelerometer_rate > 0.0) {
+    out << "accelerometer's own rate: " << options.accelerometer_rate << " Hz\n";
+  }
+  if (!options.accelerometer_gain.isIdentity() || !options.gyroscope_gain.isIdentity()) {
+    out << "accelerometer gain:\n"
+        << options.accelerometer_gain << "\ngyroscope gain:\n"
+        << options.gyroscope_gain << "\n";
+  }
   for (const Vibration& v : options.vibrations) {
     out << "vibration: " << v.frequency << " Hz +- " << v.bandwidth / 2 << ", " << v.acceleration
         << " m/s^2, " << v.angular_velocity << " rad/s\n";
@@ -104,21 +181,24 @@ std::ostream& operator<<(std::ostream& out, const ImuOptions& options) {
 ImuRecording simulateImu(const TrajectorySpline& trajectory, Stamp first, Stamp last,
                          const ImuOptions& options, std::uint64_t seed) {
   options.validate();
+  const IdealImu ideal(trajectory, options, seed);
   Random white(seed, "imu white noise");
   Random walk(seed, "imu bias walk");
-  const auto sinusoids = makeSinusoids(options.vibrations, seed);
+  Random jitter(seed, "imu jitter");
+  std::optional<OwnAccelerometer> own;
+  if (options.accelerometer_rate > 0.0) own.emplace(ideal, options, first, last, seed);
   const double white_scale = options.noise_free ? 0.0 : std::sqrt(options.rate);
   const double walk_scale = options.noise_free ? 0.0 : 1.0 / std::sqrt(options.rate);
   ImuBias bias{first, options.initial_accelerometer_bias, options.initial_gyroscope_bias};
   ImuRecording recording;
   for (std::int64_t i = 0;; ++i) {
-    bias.stamp = first + toNanoseconds(static_cast<double>(i) / options.rate);
+    bias.stamp = instantOf(i, first, options, &jitter);
     if (bias.stamp > last) return recording;
-    const double t = trajectory.secondsAt(bias.stamp) - options.time_offset;
-    ImuSample sample = idealSample(trajectory, t, options.noise.gravity, sinusoids);
+    ImuSample sample = ideal.at(bias.stamp);
     sample.stamp = bias.stamp;
-    sample.acceleration +=
-        bias.accelerometer + options.noise.accelerometer_noise * white_scale * white.normal3();
+    const Vector3d noise = options.noise.accelerometer_noise * white_scale * white.normal3();
+    sample.acceleration =
+        (own ? own->at(bias.stamp) : Vector3d(sample.acceleration + noise)) + bias.accelerometer;
     sample.angular_velocity +=
         bias.gyroscope + options.noise.gyroscope_noise * white_scale * white.normal3();
     recording.samples.push_back(sample);

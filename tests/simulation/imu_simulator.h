@@ -31,6 +31,15 @@ struct ImuOptions {
   double time_offset =
       0.0;  ///< td [s], t_imu = t_cam + td: motion of camera time t is stamped t + td
   std::vector<Vibration> vibrations;
+  /// Scale factors (diagonal, 1 without error) and misalignment of the axes: the sensor measures
+  /// these times the true specific force and angular velocity.
+  Eigen::Matrix3d accelerometer_gain = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d gyroscope_gain = Eigen::Matrix3d::Identity();
+  /// The accelerometer's own rate where a driver joins the two sensors: its values are interpolated
+  /// to the gyroscope's instants [Hz]; 0: both are one sensor.
+  double accelerometer_rate = 0.0;
+  double stamp_jitter_s =
+      0.0;  ///< standard deviation of the gyroscope's instants about the grid [s]
 
   /// Throws InputError naming the value that is out of range.
   void validate() const;
@@ -55,9 +64,10 @@ struct ImuRecording {
 /// `1/rate` apart from `first` on: the specific force R_bw (a_w - g_w) and the angular velocity,
 /// plus vibration, bias and white noise. White noise has the deviation density sqrt(rate), a bias
 /// step density / sqrt(rate) (N. Trawny, S. Roumeliotis, "Indirect Kalman filter for 3D attitude
-/// estimation", 2005, section 2.2). White noise, walks and vibrations are random streams of their
-/// own: switching one off leaves the others as they are. Throws InputError where the trajectory
-/// does not reach over the whole interval.
+/// estimation", 2005, section 2.2). With an `accelerometer_rate` the accelerometer's own samples
+/// are interpolated linearly. White noise, walks and vibrations are random streams of their own:
+/// switching one off leaves the others as they are. Throws InputError where the trajectory does not
+/// reach over the whole interval.
 ImuRecording simulateImu(const TrajectorySpline& trajectory, Stamp first, Stamp last,
                          const ImuOptions& options, std::uint64_t seed);
 

@@ -16,7 +16,9 @@ PanelGeometry::PanelGeometry(const Panel& panel)
       normal(panel.normal()),
       half_s(panel.half_s),
       half_t(panel.half_t),
-      radius(panel.radius()) {}
+      radius(panel.radius()),
+      glossy(panel.gloss.strength > 0.0),
+      lamp(panel.gloss.lamp_w) {}
 
 PanelGeometry PanelGeometry::movedBy(const Pose& T) const {
   PanelGeometry moved = *this;
@@ -35,7 +37,10 @@ PanelPaint::PanelPaint(const Panel& panel)
       scale_t(static_cast<float>(panel.texels_per_m * panel.half_t)),
       light(static_cast<float>(panel.light)),
       light_s(static_cast<float>(panel.light_s * panel.half_s)),
-      light_t(static_cast<float>(panel.light_t * panel.half_t)) {}
+      light_t(static_cast<float>(panel.light_t * panel.half_t)),
+      gloss(static_cast<float>(panel.gloss.strength)),
+      gloss_s(static_cast<float>(panel.half_s / panel.gloss.width_m)),
+      gloss_t(static_cast<float>(panel.half_t / panel.gloss.width_m)) {}
 
 PanelView::PanelView(const PanelGeometry& panel, const Eigen::Matrix3d& R_cw,
                      const Eigen::Vector3d& p_wc) {
@@ -51,6 +56,21 @@ PanelView::PanelView(const PanelGeometry& panel, const Eigen::Matrix3d& R_cw,
   s = toFloat(R_cw * s_w);
   t = toFloat(R_cw * t_w);
   offset = static_cast<float>(height);
+  if (panel.glossy) mirrorLamp(panel, p_wc);
+}
+
+void PanelView::mirrorLamp(const PanelGeometry& panel, const Eigen::Vector3d& p_wc) {
+  const double lamp_height = (panel.lamp - panel.centre).dot(panel.normal);
+  const double camera_height = (p_wc - panel.centre).dot(panel.normal);
+  if (lamp_height <= 0.0) {
+    mirror_s = mirror_t = 1e6F;  // the lamp is behind the panel
+    return;
+  }
+  const Eigen::Vector3d image = panel.lamp - 2.0 * lamp_height * panel.normal;
+  const double share = camera_height / (camera_height + lamp_height);
+  const Eigen::Vector3d place = p_wc + share * (image - p_wc) - panel.centre;
+  mirror_s = static_cast<float>(place.dot(panel.axis_s) / panel.half_s);
+  mirror_t = static_cast<float>(place.dot(panel.axis_t) / panel.half_t);
 }
 
 }  // namespace vins::simulation

@@ -18,24 +18,11 @@ struct PanelGeometry {
   Eigen::Vector3d centre, axis_s, axis_t, normal;
   double half_s = 0.0, half_t = 0.0;  ///< [m]
   double radius = 0.0;                ///< of its corners about the centre [m]
+  bool glossy = false;
+  Eigen::Vector3d lamp;  ///< that the panel mirrors, where it is glossy
 
   explicit PanelGeometry(const Panel& panel);
   PanelGeometry movedBy(const Pose& T) const;
-};
-
-/// How a panel looks, with places on it as fractions of its half sides, from -1 to 1.
-struct PanelPaint {
-  const Texture* texture;
-  float origin_x, origin_y;  ///< texel at the centre
-  float scale_s, scale_t;    ///< texels per half side
-  float light, light_s, light_t;
-
-  explicit PanelPaint(const Panel& panel);
-
-  float luminance(float s, float t, const Footprint& footprint) const {
-    return texture->sample(origin_x + scale_s * s, origin_y + scale_t * t, footprint) *
-           (light + light_s * s + light_t * t);
-  }
 };
 
 /// A panel as a camera at one instant sees it. For the bearing b in the camera frame, with
@@ -45,13 +32,43 @@ struct PanelPaint {
 /// where the camera is behind the panel.
 struct PanelView {
   std::array<float, 3> normal{}, s{}, t{};
-  float offset = 0.0F;  ///< [m], negative
+  float offset = 0.0F;                     ///< [m], negative
+  float mirror_s = 0.0F, mirror_t = 0.0F;  ///< place of the mirrored lamp; only of glossy panels
 
   PanelView() = default;
   PanelView(const PanelGeometry& panel, const Eigen::Matrix3d& R_cw, const Eigen::Vector3d& p_wc);
 
+  /// Finds where the camera sees the lamp mirrored: on the line to the lamp's mirror image.
+  void mirrorLamp(const PanelGeometry& panel, const Eigen::Vector3d& p_wc);
+
   static float dot(const std::array<float, 3>& a, float x, float y, float z) {
     return a[0] * x + a[1] * y + a[2] * z;
+  }
+};
+
+/// How a panel looks, with places on it as fractions of its half sides, from -1 to 1.
+struct PanelPaint {
+  const Texture* texture;
+  float origin_x, origin_y;  ///< texel at the centre
+  float scale_s, scale_t;    ///< texels per half side
+  float light, light_s, light_t;
+  float gloss;             ///< luminance at the middle of the mirrored lamp
+  float gloss_s, gloss_t;  ///< half sides per width of the mirrored lamp
+
+  explicit PanelPaint(const Panel& panel);
+
+  /// Of a place on the panel as it is seen in `view`.
+  float luminance(const PanelView& view, float s, float t, const Footprint& footprint) const {
+    const float matt = texture->sample(origin_x + scale_s * s, origin_y + scale_t * t, footprint) *
+                       (light + light_s * s + light_t * t);
+    return gloss > 0.0F ? matt + mirrored(view, s, t) : matt;
+  }
+
+  /// The lamp's mirror image: falls off smoothly with the distance from its middle.
+  float mirrored(const PanelView& view, float s, float t) const {
+    const float ds = gloss_s * (s - view.mirror_s), dt = gloss_t * (t - view.mirror_t);
+    const float fall = 1.0F + ds * ds + dt * dt;
+    return gloss / (fall * fall);
   }
 };
 

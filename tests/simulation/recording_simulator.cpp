@@ -41,6 +41,10 @@ bool isBuiltin(const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+Pose cameraInBody(const RecordingOptions& options) {
+  return options.own_rig ? options.own_rig->truth.T_bc.front() : eurocCameraInBody(0);
+}
+
 Motion motionOfFile(const RecordingOptions& options, std::ostream* description) {
   const Trajectory trajectory = readTrajectoryFile(options.trajectory);
   const double end =
@@ -66,7 +70,7 @@ Motion makeMotion(const RecordingOptions& options, std::ostream* description) {
   *description << "trajectory: " << options.trajectory << "\n";
   const double end = options.start + options.duration.value_or(kDefaultDuration);
   return {
-      makeBuiltinTrajectory(options.trajectory, options.seed, end, eurocCameraInBody(0), kEpoch),
+      makeBuiltinTrajectory(options.trajectory, options.seed, end, cameraInBody(options), kEpoch),
       options.start, end};
 }
 
@@ -98,11 +102,12 @@ std::shared_ptr<const Scene> buildScene(const RecordingOptions& options, const M
   const Scene scene =
       fitted ? sceneFittedTo(positions, options.seed, style) : makeScene(name, options.seed);
   return std::make_shared<const Scene>(withMovingObjects(scene, options.moving_objects,
-                                                         motion.spline, eurocCameraInBody(0),
+                                                         motion.spline, cameraInBody(options),
                                                          motion.begin, motion.end, options.seed));
 }
 
 ImuOptions imuOptions(const RecordingOptions& options) {
+  if (options.own_rig) return options.own_rig->imu;
   ImuOptions imu;
   imu.rate = options.imu_rate;
   imu.time_offset = options.time_offset;
@@ -125,6 +130,7 @@ ImuOptions imuOptions(const RecordingOptions& options) {
 }
 
 Rig makeRig(const RecordingOptions& options) {
+  if (options.own_rig) return options.own_rig->truth;
   Rig rig;
   for (int camera = 0; camera < (options.stereo ? 2 : 1); ++camera) {
     const bool is_own = !options.camera_file.empty();
@@ -142,6 +148,7 @@ Rig makeRig(const RecordingOptions& options) {
 
 /// As handed out: with errors, and with td as something to find out.
 Rig handedOut(const Rig& rig, const RecordingOptions& options) {
+  if (options.own_rig) return options.own_rig->handed_out;
   Rig handed = withCalibrationError(rig, options.calibration_error, options.seed);
   handed.estimate_time_offset = rig.time_offset != 0.0;
   handed.time_offset = 0.0;
@@ -150,15 +157,16 @@ Rig handedOut(const Rig& rig, const RecordingOptions& options) {
 
 void addImu(const RecordingOptions& options, Stamp begin, Stamp end,
             SimulatedRecording* recording) {
-  const Stamp offset = toNanoseconds(options.time_offset);
+  const double time_offset = imuOptions(options).time_offset;
+  const Stamp offset = toNanoseconds(time_offset);
   const Stamp last = end + offset + toNanoseconds(kImuOverhang);
   std::vector<ImuSample> samples;
   if (options.recorded_imu.empty()) {
     // The first sample lies on the grid of the images, not after the first of them.
-    const double before = std::max(0.0, std::ceil(-options.time_offset * options.imu_rate));
-    const Stamp first = begin - toNanoseconds(before / options.imu_rate);
-    const ImuRecording imu =
-        simulateImu(recording->motion, first, last, imuOptions(options), options.seed);
+    const ImuOptions imu_options = imuOptions(options);
+    const double before = std::max(0.0, std::ceil(-time_offset * imu_options.rate));
+    const Stamp first = begin - toNanoseconds(before / imu_options.rate);
+    const ImuRecording imu = simulateImu(recording->motion, first, last, imu_options, options.seed);
     samples = imu.samples;
     recording->biases = imu.biases;
   } else {
@@ -172,14 +180,21 @@ void addImu(const RecordingOptions& options, Stamp begin, Stamp end,
 
 void addImages(const RecordingOptions& options, const Motion& motion, Stamp begin, Stamp end,
                const std::shared_ptr<const Scene>& scene, SimulatedRecording* recording) {
-  for (int i = 0;; ++i) {
-    const double t = i / options.image_rate;
-    const Stamp stamp = begin + toNanoseconds(t);
-    if (stamp > end) break;
-    if (!contains(options.faults.frames.dropped, t)) recording->image_stamps.push_back(stamp);
+  FrameTiming timing = options.timing;
+  timing.rate = options.image_rate;
+  for (const FrameInstant& frame : frameInstants(timing, toSeconds(end - begin), options.seed)) {
+    if (contains(options.faults.frames.dropped, frame.taken_s)) continue;
+    recording->image_stamps.push_back(begin + toNanoseconds(frame.stamped_s));
+    recording->image_times.push_back(motion.spline.secondsAt(begin + toNanoseconds(frame.taken_s)));
   }
   ImageOptions image = options.image;
   image.blackouts.clear();
+  if (options.auto_exposure) {
+    const Pose T_bc = recording->true_rig.T_bc.front();
+    const auto T_wc = [&](double t_s) { return motion.spline.poseAt(t_s) * T_bc; };
+    image.exposures = planExposure(*scene, *recording->true_rig.cameras.front(), T_wc, motion.begin,
+                                   motion.end, *options.auto_exposure);
+  }
   for (const TimeInterval& blackout : options.faults.frames.blackouts) {
     image.blackouts.push_back({blackout.begin_s + motion.begin, blackout.end_s + motion.begin});
   }
@@ -205,7 +220,7 @@ void RecordingOptions::validate() const {
   if (!(start >= 0.0)) fail("start", start, "at least 0 s");
   if (duration && !(*duration >= 0.5)) fail("duration", *duration, "at least 0.5 s");
   if (!(image_rate >= 0.1 && image_rate <= 1000.0)) fail("rate", image_rate, "0.1 to 1000 Hz");
-  if (!(std::abs(time_offset) <= 0.09)) fail("td", time_offset, "-0.09 to 0.09 s");
+  if (!(std::abs(time_offset) <= 0.2)) fail("td", time_offset, "-0.2 to 0.2 s");
   if (!(vibration >= 0.0)) fail("vibration", vibration, "at least 0 m/s^2");
   if (moving_objects < 0) fail("moving objects", moving_objects, "at least 0");
   if (imu_noise != "euroc" && imu_noise != "low" && imu_noise != "none") {
@@ -216,12 +231,14 @@ void RecordingOptions::validate() const {
                      "'; allowed: the file of the ground truth of that flight");
   }
   imuOptions(*this).validate();
+  timing.validate();
+  if (auto_exposure) auto_exposure->validate();
   image.validate();
 }
 
 cv::Mat SimulatedRecording::render(std::size_t camera, std::size_t index) const {
   const auto pose_at = [this](double t_s) { return motion.poseAt(t_s); };
-  return cameras[camera].render(pose_at, motion.secondsAt(image_stamps[index]), index);
+  return cameras[camera].render(pose_at, image_times[index], index);
 }
 
 SimulatedRecording simulateRecording(const RecordingOptions& options) {
@@ -236,7 +253,8 @@ SimulatedRecording simulateRecording(const RecordingOptions& options) {
     description << imuOptions(options);
   }
   const Rig rig = makeRig(options);
-  SimulatedRecording recording{motion.spline, {}, {}, {}, {}, rig, handedOut(rig, options), "", {}};
+  SimulatedRecording recording{motion.spline,           {}, {}, {}, {}, {}, rig,
+                               handedOut(rig, options), "", {}};
   const Stamp begin = motion.spline.epoch() + toNanoseconds(motion.begin);
   const Stamp end = motion.spline.epoch() + toNanoseconds(motion.end);
   addImu(options, begin, end, &recording);

@@ -8,7 +8,9 @@
 
 #include <opencv2/core.hpp>
 
+#include "simulation/auto_exposure.h"
 #include "simulation/faults.h"
+#include "simulation/frame_timing.h"
 #include "simulation/image_simulator.h"
 #include "simulation/imu_simulator.h"
 #include "simulation/rig.h"
@@ -16,6 +18,13 @@
 #include "vins_core/trajectory.h"
 
 namespace vins::simulation {
+
+/// A rig that is not EuRoC's: what it is, what its user believes, and what its IMU does.
+struct OwnRig {
+  Rig truth;
+  Rig handed_out;
+  ImuOptions imu;
+};
 
 /// A recording to simulate.
 struct RecordingOptions {
@@ -36,7 +45,10 @@ struct RecordingOptions {
   double calibration_error = 0.0;       ///< of the rig as handed out [sigmas]
   int moving_objects = 0;
   Faults faults;
-  ImageOptions image;  ///< its blackouts are ignored: see `faults`
+  FrameTiming timing;                         ///< its rate is ignored: see `image_rate`
+  std::optional<AutoExposure> auto_exposure;  ///< in place of the image's exposure
+  std::optional<OwnRig> own_rig;              ///< in place of EuRoC's rig and its options above
+  ImageOptions image;                         ///< its blackouts are ignored: see `faults`
 
   /// Throws InputError naming the value that is out of range.
   void validate() const;
@@ -47,6 +59,7 @@ struct RecordingOptions {
 struct SimulatedRecording {
   TrajectorySpline motion;
   std::vector<Stamp> image_stamps;
+  std::vector<double> image_times;  ///< when each image is really taken [s of the motion]
   std::vector<ArrivedSample> imu;
   std::vector<ImuBias> biases;  ///< in the samples; empty where the IMU is recorded
   Trajectory ground_truth;      ///< body poses at 200 Hz

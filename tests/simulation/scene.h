@@ -15,6 +15,13 @@
 
 namespace vins::simulation {
 
+/// The mirror image of a lamp in a panel, which moves over it as the camera moves.
+struct Gloss {
+  double strength = 0.0;  ///< luminance at the middle of the mirror image; 0: a matt panel
+  double width_m = 0.15;  ///< of the mirror image on the panel
+  Eigen::Vector3d lamp_w = Eigen::Vector3d::Zero();  ///< [m]
+};
+
 /// A textured rectangle, seen from the side that its normal axis_s x axis_t points to; from behind
 /// it is not there. A place on it is centre + s axis_s + t axis_t with |s| <= half_s, |t| <= half_t
 /// [m].
@@ -30,12 +37,14 @@ struct Panel {
   double light = 1.0;    ///< luminance is the texture's times the light that falls on the place,
   double light_s = 0.0;  ///< light + light_s s + light_t t [light and light per m]
   double light_t = 0.0;
+  Gloss gloss;
 
   Eigen::Vector3d normal() const { return axis_s.cross(axis_t); }
   double radius() const { return std::hypot(half_s, half_t); }
   /// The same panel on a body at this pose.
   Panel movedBy(const Pose& T) const;
-  /// Luminance in [0, 1] at a place on the panel, at the texture's full resolution.
+  /// Luminance at a place on the panel, at the texture's full resolution and without gloss. More
+  /// than 1 is more than the sensor takes.
   double luminanceAt(double s, double t) const;
 };
 

@@ -10,8 +10,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kLargestTexture = 2048;
-/// Light from all around.
-constexpr double kAmbientLight = 0.55;
 
 int textureSide(double metres, double texels_per_m) {
   int side = 64;
@@ -77,8 +75,13 @@ void SceneBuilder::addPanel(const Vector3d& centre, const Vector3d& axis_s, cons
                             double half_s, double half_t, const Finish& finish) {
   Panel panel = panelOf(centre, axis_s, axis_t, half_s, half_t).movedBy(T_ws_);
   panel.texture = nextTexture(2.0 * half_s, 2.0 * half_t, finish);
+  finishPanel(panel, finish);
+}
+
+void SceneBuilder::finishPanel(Panel panel, const Finish& finish) {
   panel.texels_per_m = finish.texels_per_m;
   panel.light = finish.glow;
+  panel.gloss = {finish.gloss, finish.gloss_width_m, mirrored_lamp_w_};
   panels_.push_back(panel);
 }
 
@@ -101,11 +104,9 @@ void SceneBuilder::addBlock(const Pose& T_sb, const Vector3d& half, const Finish
   for (const Panel& side : blockPanels(half)) {
     Panel panel = side.movedBy(T_wb);
     panel.texture = texture;
-    panel.texels_per_m = finish.texels_per_m;
-    panel.light = finish.glow;
     panel.texture_origin.x() = random_.uniform(0.0, texture->width());
     panel.texture_origin.y() = random_.uniform(0.0, texture->height());
-    panels_.push_back(panel);
+    finishPanel(panel, finish);
   }
   solids_.push_back({T_wb, half});
 }
@@ -135,13 +136,14 @@ std::shared_ptr<const Texture> SceneBuilder::nextTexture(double side_s, double s
     options.height = textureSide(side_t, finish.texels_per_m);
     options.texels_per_m = finish.texels_per_m;
     options.style = finish.style;
+    options.luminance = finish.luminance;
     texture = std::make_shared<const Texture>(makeNaturalTexture(seed_, name, options));
   }
   return texture;
 }
 
 double SceneBuilder::lightAt(const Vector3d& p_w, const Vector3d& normal) const {
-  double light = kAmbientLight;
+  double light = ambient_light_;
   for (const Light& source : lights_) {
     const Vector3d ray = source.p_w - p_w;
     const double distance = ray.norm();

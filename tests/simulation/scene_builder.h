@@ -27,7 +27,10 @@ struct ReservedSpace {
 struct Finish {
   TextureStyle style = TextureStyle::kClutter;
   double texels_per_m = 256.0;
-  double glow = 0.0;  ///< if positive, the light on it, whatever the lamps
+  double glow = 0.0;       ///< if positive, the light on it, whatever the lamps
+  double luminance = 0.0;  ///< of a plain style; not positive: drawn
+  double gloss = 0.0;      ///< luminance of the mirror image of setMirroredLamp()'s lamp
+  double gloss_width_m = 0.15;
 };
 
 /// The six sides of a block about the origin, seen from outside, without texture.
@@ -47,6 +50,12 @@ class SceneBuilder {
 
   /// Lights the panels that face it: at `range` [m] half as much as nearby.
   void addLight(const Eigen::Vector3d& p_s, double power, double range);
+
+  /// Light from all around; 0.55 unless set.
+  void setAmbientLight(double light) { ambient_light_ = light; }
+
+  /// The lamp that glossy panels added from here on mirror.
+  void setMirroredLamp(const Eigen::Vector3d& p_s) { mirrored_lamp_w_ = T_ws_ * p_s; }
 
   /// A rectangle with a texture of its own; see Panel for the side from which it is seen.
   void addPanel(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis_s,
@@ -75,6 +84,8 @@ class SceneBuilder {
   std::shared_ptr<const Texture> nextTexture(double side_s, double side_t, const Finish& finish);
   double lightAt(const Eigen::Vector3d& p_w, const Eigen::Vector3d& normal) const;
   void lightUp(Panel& panel) const;
+  /// Adds a panel that lies where it should, with what does not depend on its size.
+  void finishPanel(Panel panel, const Finish& finish);
 
   std::uint64_t seed_;
   std::string section_;
@@ -85,6 +96,8 @@ class SceneBuilder {
   std::vector<Panel> panels_;
   std::vector<Solid> solids_;
   std::vector<Light> lights_;
+  double ambient_light_ = 0.55;
+  Eigen::Vector3d mirrored_lamp_w_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace vins::simulation

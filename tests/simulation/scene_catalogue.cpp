@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulation/furnishing.h"
+#include "simulation/household_scene.h"
 #include "simulation/scene_builder.h"
 #include "vins_core/input_error.h"
 #include "vins_core/so3.h"
@@ -155,7 +156,7 @@ Scene makeYard(std::uint64_t seed) {
 }  // namespace
 
 std::vector<std::string> sceneNames() {
-  return {"room", "hall", "corridor", "corridor_alike", "yard"};
+  return {"room", "hall", "corridor", "corridor_alike", "yard", "household"};
 }
 
 Scene makeScene(const std::string& name, std::uint64_t seed) {
@@ -164,8 +165,9 @@ Scene makeScene(const std::string& name, std::uint64_t seed) {
   if (name == "corridor") return makeCorridor(seed, false);
   if (name == "corridor_alike") return makeCorridor(seed, true);
   if (name == "yard") return makeYard(seed);
+  if (name == "household") return makeHousehold(seed);
   throw InputError("scene: found '" + name +
-                   "'; allowed: room, hall, corridor, corridor_alike, yard");
+                   "'; allowed: room, hall, corridor, corridor_alike, yard, household");
 }
 
 Scene sceneFittedTo(const std::vector<Vector3d>& positions_w, std::uint64_t seed, FittedStyle style,

@@ -23,6 +23,8 @@ std::vector<std::string> sceneNames();
 /// - corridor: 2.5 m wide and 3 m high around a block, outer walls 20 x 14 m. Free: 0.85 from the
 ///   centre line, the rectangle abs(x) = 8.75, abs(y) = 5.75; z < 2.7.
 /// - corridor_alike: the same, both long sides alike (turned by 180 degrees about z).
+/// - household: a bedroom of weak texture, see makeHousehold(). Free: abs(x), abs(y) < 0.95,
+///   0.9 < z < 2.2.
 /// - yard: 80 x 80 m, with containers, crates and a sky. Free: abs(x), abs(y) < 8, z < 12.
 ///
 /// Throws InputError for other names.

@@ -36,8 +36,8 @@ class SceneRenderer {
  public:
   SceneRenderer(std::shared_ptr<const Scene> scene, const camera_model::Camera& camera);
 
-  /// Luminance in [0, 1] as CV_32FC1; 0 where the camera has no bearing or nothing is seen. The
-  /// same for any number of threads.
+  /// Luminance as CV_32FC1, more than 1 where panels glow; 0 where the camera has no bearing or
+  /// nothing is seen. The same for any number of threads.
   cv::Mat render(const ExposurePlan& plan, int threads) const;
 
  private:

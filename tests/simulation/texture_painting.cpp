@@ -7,6 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "simulation/plain_textures.h"
 #include "vins_core/input_error.h"
 
 namespace vins::simulation {
@@ -247,6 +248,8 @@ double paint(Canvas& canvas, Random& random, TextureStyle style) {
       return paintGround(canvas, random), 0.15;
     case TextureStyle::kClouds:
       return 0.12;
+    default:
+      break;
   }
   return 0.0;
 }
@@ -287,11 +290,12 @@ void addOctave(Random& random, cv::Mat& noise) {
 
 }  // namespace
 
-cv::Mat fractalNoise(Random& random, int width, int height) {
+cv::Mat fractalNoise(Random& random, int width, int height, int finest) {
   const int coarsest = 4;
   cv::Mat noise = cv::Mat::zeros(coarsest, coarsest, CV_32FC1);
   while (true) {
-    addOctave(random, noise);
+    const int octave = std::max(width / noise.cols, height / noise.rows);
+    if (noise.cols == coarsest || octave >= finest) addOctave(random, noise);
     if (noise.cols >= width && noise.rows >= height) break;
     if (noise.cols < width) noise = doubledWidth(noise);
     if (noise.rows < height) noise = doubledWidth(noise.t()).t();
@@ -318,6 +322,7 @@ Texture makeNaturalTexture(std::uint64_t seed, const std::string& stream,
         " per metre; allowed: sides that are powers of two from 4 on, a positive density");
   }
   Random random(seed, "texture " + stream);
+  if (isPlainStyle(options.style)) return Texture(paintPlainSurface(random, options));
   const int grey = greyBetween(random, 110, 165);
   // The sky is as bright on all sides.
   Canvas canvas(options, options.style == TextureStyle::kClouds ? 190 : grey);

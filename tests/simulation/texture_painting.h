@@ -18,7 +18,12 @@ enum class TextureStyle {
   kClutter,  ///< overlapping shapes of all sizes
   kBoards,   ///< planks with grain
   kGround,   ///< gravel and patches
-  kClouds    ///< soft, without edges
+  kClouds,   ///< soft, without edges
+  kPaint,    ///< a plain painted wall: mottled by a percent
+  kLacquer,  ///< furniture without structure
+  kFabric,   ///< bedding and clothes: soft wrinkles
+  kCurtain,  ///< soft vertical folds
+  kWood      ///< a floor of boards with a faint grain
 };
 
 struct TextureOptions {
@@ -26,6 +31,7 @@ struct TextureOptions {
   int height = 512;           ///< texels, a power of two
   double texels_per_m = 256;  ///< sets the size of bricks, letters and stains
   TextureStyle style = TextureStyle::kClutter;
+  double luminance = 0.0;  ///< mean of the plain styles (kPaint to kWood); not positive: drawn
 };
 
 /// A tileable picture with the statistics of natural ones: shapes that occlude each other with
@@ -37,6 +43,7 @@ Texture makeNaturalTexture(std::uint64_t seed, const std::string& stream,
                            const TextureOptions& options);
 
 /// Tileable noise of mean 0 and standard deviation 1 with equal power per octave, as CV_32FC1.
-cv::Mat fractalNoise(Random& random, int width, int height);
+/// Octaves finer than `finest` texels are left out.
+cv::Mat fractalNoise(Random& random, int width, int height, int finest = 1);
 
 }  // namespace vins::simulation

@@ -199,5 +199,32 @@ TEST(ImageOptions, PrintsEveryOption) {
   }
 }
 
+TEST(ImageSensor, PixelNoiseGrowsWithTheGain) {
+  ImageOptions options = perfect();
+  options.full_well_electrons = 5000.0;
+  options.read_noise_electrons = 20.0;
+  for (const double gain : {1.0, 4.0}) {
+    options.gain = gain;
+    // In the dark there are no photons; half grey, so that nothing is cut off at black.
+    const double grey = 128.0;
+    const double photons = gain * 255.0 * grey / 5000.0;
+    const double pixel = std::pow(gain * 255.0 * 20.0 / 5000.0, 2);
+    const double expected = photons + pixel + 1.0 / 12.0;
+    EXPECT_NEAR(varianceOf(expose(options, flat(grey / gain / 255.0))), expected, 0.03 * expected);
+  }
+}
+
+TEST(ImageSensor, FollowsTheSettingsOfAnAutomaticExposure) {
+  ImageOptions options = perfect();
+  options.exposures = {{1.0, 0.010, 1.0, 1.0}, {2.0, 0.030, 3.0, 2.0}};
+  const ImageSensor sensor(options, 1, "cam0");
+  EXPECT_EQ(sensor.settingAt(0.0).exposure_s, 0.010);
+  EXPECT_NEAR(sensor.settingAt(1.5).exposure_s, 0.020, 1e-12);
+  EXPECT_EQ(sensor.settingAt(9.0).exposure_s, 0.030);
+  // Three times the light, twice the gain.
+  EXPECT_EQ(sensor.expose(flat(0.1), 1.0, 0).at<std::uint8_t>(5, 5), 26);
+  EXPECT_EQ(sensor.expose(flat(0.1), 2.0, 0).at<std::uint8_t>(5, 5), 153);
+}
+
 }  // namespace
 }  // namespace vins::simulation

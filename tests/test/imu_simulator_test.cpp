@@ -209,5 +209,65 @@ TEST(ImuSimulator, RefusesBadOptionsAndTimesBeyondTheTrajectory) {
   EXPECT_THROW(options.validate(), InputError);
 }
 
+TEST(ImuSimulator, ErrorsOfScaleAndAlignmentMultiplyTheTruth) {
+  const TrajectorySpline fast = makeBuiltinTrajectory("fast", 1, 10.0);
+  ImuOptions options = noiseFree(100.0);
+  const ImuRecording truth = simulateImu(fast, 0, 5 * kSecond, options, 1);
+  options.accelerometer_gain.diagonal() = Vector3d(1.01, 0.99, 1.0);
+  options.gyroscope_gain.diagonal() = Vector3d(0.98, 1.0, 1.01);
+  options.gyroscope_gain(0, 1) = 0.003;
+  const ImuRecording erring = simulateImu(fast, 0, 5 * kSecond, options, 1);
+  for (std::size_t i = 0; i < truth.samples.size(); ++i) {
+    const Vector3d f = truth.samples[i].acceleration, w = truth.samples[i].angular_velocity;
+    EXPECT_LT((erring.samples[i].acceleration - Vector3d(1.01 * f.x(), 0.99 * f.y(), f.z())).norm(),
+              1e-12);
+    const Vector3d expected(0.98 * w.x() + 0.003 * w.y(), w.y(), 1.01 * w.z());
+    EXPECT_LT((erring.samples[i].angular_velocity - expected).norm(), 1e-12);
+  }
+}
+
+TEST(ImuSimulator, AnAccelerometerOfItsOwnRateIsJoinedByInterpolation) {
+  const TrajectorySpline fast = makeBuiltinTrajectory("fast", 1, 10.0);
+  ImuOptions options = noiseFree(200.0);
+  const ImuRecording one = simulateImu(fast, 0, 5 * kSecond, options, 1);
+  options.accelerometer_rate = 62.5;
+  const ImuRecording joined = simulateImu(fast, 0, 5 * kSecond, options, 1);
+  ASSERT_EQ(joined.samples.size(), one.samples.size());
+  double most = 0.0, bends = 0.0;
+  for (std::size_t i = 0; i < one.samples.size(); ++i) {
+    EXPECT_EQ(joined.samples[i].angular_velocity, one.samples[i].angular_velocity);
+    most = std::max(most, (joined.samples[i].acceleration - one.samples[i].acceleration).norm());
+    if (i < 2) continue;
+    const Vector3d bend = joined.samples[i].acceleration -
+                          2.0 * joined.samples[i - 1].acceleration +
+                          joined.samples[i - 2].acceleration;
+    bends += bend.norm() > 1e-5 ? 1.0 : 0.0;
+  }
+  // Wrong, for it is interpolated over 16 ms, but not by much.
+  EXPECT_GT(most, 1e-4);
+  EXPECT_LT(most, 0.3);
+  // Straight between its own samples: a second difference at 200 Hz bends once for each of them, in
+  // two places at most.
+  EXPECT_LT(bends, 2.0 * 5.0 * 62.5 + 4.0);
+}
+
+TEST(ImuSimulator, JitteredStampsRiseAndTellTheTruthAtTheirTime) {
+  const TrajectorySpline fast = makeBuiltinTrajectory("fast", 1, 10.0);
+  ImuOptions options = noiseFree(200.0);
+  options.stamp_jitter_s = 0.002;
+  const ImuRecording imu = simulateImu(fast, 0, 5 * kSecond, options, 1);
+  double least = 1.0, most = 0.0;
+  for (std::size_t i = 1; i < imu.samples.size(); ++i) {
+    const double interval = toSeconds(imu.samples[i].stamp - imu.samples[i - 1].stamp);
+    least = std::min(least, interval);
+    most = std::max(most, interval);
+    const MotionState state = fast.at(fast.secondsAt(imu.samples[i].stamp));
+    EXPECT_LT((imu.samples[i].angular_velocity - state.angular_velocity_b).norm(), 1e-12);
+  }
+  EXPECT_GT(least, 0.0);
+  EXPECT_LT(least, 0.002);
+  EXPECT_GT(most, 0.008);
+}
+
 }  // namespace
 }  // namespace vins::simulation

@@ -171,6 +171,9 @@ TEST(SceneCatalogue, DocumentedSpaceIsFree) {
   expectFree(corridor, {-9.6, -6.6, 0.01}, {-7.9, 6.6, 2.7});
   EXPECT_FALSE(corridor.isFree({0.0, 0.0, 1.5}, 0.0)) << "inside of the block";
   expectFree(makeScene("yard", seed), {-8.0, -8.0, 0.01}, {8.0, 8.0, 12.0});
+  for (std::uint64_t household = 1; household <= 8; ++household) {
+    expectFree(makeScene("household", household), {-0.95, -0.95, 0.9}, {0.95, 0.95, 2.2});
+  }
 }
 
 TEST(SceneCatalogue, SeedsDifferAndRepeat) {

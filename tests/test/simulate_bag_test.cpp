@@ -151,8 +151,10 @@ TEST_F(SimulateBag, ErrorsTellWhatIsAllowed) {
       {"--duration 10 --faults", "--faults: found a duration of 10"},
       {"--recorded-imu /no/such.csv", "/no/such.csv: cannot be opened"},
       {"--camera /no/such.yaml", "/no/such.yaml"},
-      {"--td 1", "td: found 1; allowed: -0.09 to 0.09 s"},
+      {"--td 1", "td: found 1; allowed: -0.2 to 0.2 s"},
       {"--calibration-error -1", "allowed: a number of sigmas"},
+      {"--preset kitchen", "--preset: found 'kitchen'; allowed: household"},
+      {"--preset household --td 0.1", "--preset household: found --td; allowed: --seed"},
       {"--speed 2", "unrecognised option '--speed'"},
   };
   for (const auto& c : cases) {

@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <boost/program_options.hpp>
 
 #include "simulation/builtin_trajectories.h"
+#include "simulation/household_recording.h"
 #include "simulation/recording_simulator.h"
 #include "vins_core/input_error.h"
 #include "vins_core/interrupt.h"
@@ -39,11 +41,14 @@ void addMotionOptions(po::options_description* options) {
   for (const std::string& name : sim::builtinTrajectoryNames()) names += name + ", ";
   auto add = options->add_options();
   add("output,o", po::value<std::string>()->required(), "bag to write");
+  add("preset", withDefault<std::string>(""),
+      "household: a walk through a room with a consumer's device, all of which the seed draws; "
+      "only --seed, --duration (35 s) and --threads go with it");
   add("trajectory", withDefault<std::string>("hall_loop"),
       (names + "or a file of poses (TUM, EuRoC csv)").c_str());
   add("scene", withDefault<std::string>(""),
-      "room, hall, corridor, corridor_alike, yard, fitted_room, fitted_hall; otherwise what suits "
-      "the trajectory");
+      "room, hall, corridor, corridor_alike, yard, household, fitted_room, fitted_hall; otherwise "
+      "what suits the trajectory");
   add("start", withDefault(0.0), "where in the trajectory to begin [s]");
   add("duration", po::value<double>(), "[s]; 60, or to the end of a file");
   add("seed", withDefault<std::uint64_t>(1), "same seed, same bytes");
@@ -132,7 +137,26 @@ sim::ImageOptions readImageOptions(const po::variables_map& values) {
   return image;
 }
 
+/// Throws InputError for an unknown preset, and for an option that the preset would override.
+sim::RecordingOptions readPreset(const po::variables_map& values) {
+  const std::string preset = values["preset"].as<std::string>();
+  if (preset != "household") {
+    throw vins::InputError("--preset: found '" + preset + "'; allowed: household");
+  }
+  const std::set<std::string> allowed = {"preset", "output", "seed", "duration", "threads"};
+  for (const auto& [name, value] : values) {
+    if (value.defaulted() || allowed.count(name) > 0) continue;
+    throw vins::InputError("--preset household: found --" + name +
+                           "; allowed: --seed, --duration, --threads");
+  }
+  const double duration = values.count("duration") > 0 ? values["duration"].as<double>() : 35.0;
+  auto options = sim::householdRecording(values["seed"].as<std::uint64_t>(), duration);
+  options.image.threads = values["threads"].as<int>();
+  return options;
+}
+
 sim::RecordingOptions readOptions(const po::variables_map& values) {
+  if (!values["preset"].as<std::string>().empty()) return readPreset(values);
   sim::RecordingOptions options;
   options.trajectory = values["trajectory"].as<std::string>();
   options.scene = values["scene"].as<std::string>();

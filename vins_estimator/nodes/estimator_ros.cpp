@@ -54,7 +54,6 @@ EstimatorRos::EstimatorRos(const ros::NodeHandle& node, const ros::NodeHandle& p
 EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
                            const vins_msgs::NodeConfiguration& configuration)
     : options_(loadOptions(configuration)),
-      imu_topic_(configuration.rig.imu.topic),
       estimator_(options_),
       publisher_(private_node),
       propagator_(options_.imu),
@@ -63,7 +62,7 @@ EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
   diagnostics_.setHardwareID("visual-inertial rig");
   diagnostics_.add("estimator", this, &EstimatorRos::report);
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
-  imu_ = node.subscribe(parameters.text("imu_topic"), 2000, &EstimatorRos::onImu, this, no_delay);
+  imu_ = node.subscribe(configuration.rig.imu.topic, 2000, &EstimatorRos::onImu, this, no_delay);
   features_ = node.subscribe(kFeatureTopic, 100, &EstimatorRos::onFeatures, this, no_delay);
   matches_ = node.subscribe("pose_graph/loop_match", 100, &EstimatorRos::onLoopMatch, this);
   restarts_ = node.subscribe("feature_tracker/restart", 10, &EstimatorRos::onRestart, this);

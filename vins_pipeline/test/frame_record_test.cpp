@@ -41,6 +41,8 @@ PipelineResult resultWith(const estimator::Odometry& odometry) {
   estimate.statistics.landmarks = 55;
   estimate.statistics.outliers = 2;
   estimate.statistics.keyframe = true;
+  estimate.rig.td = -0.047;
+  estimate.rig_covariance(6, 6) = 4e-6;
   result.estimates.push_back(estimate);
   return result;
 }
@@ -60,7 +62,7 @@ TEST(FrameRecord, WritesALineForEachImageAndOdometry) {
   EXPECT_NE(record.trackerCsv().find("\n1600000000000000000,90,80,70,30,12.500\n"),
             std::string::npos);
   const std::vector<double> row = lastRow(record.estimatorCsv());
-  ASSERT_EQ(row.size(), 13u);
+  ASSERT_EQ(row.size(), 15u);
   EXPECT_EQ(std::vector<double>(row.begin() + 1, row.begin() + 5),
             (std::vector<double>{3.0, 55.0, 2.0, 1.0}));
 }
@@ -76,7 +78,7 @@ TEST(FrameRecord, DeviationsAreThoseOfTheWorldsAxes) {
   FrameRecord record;
   record.add(resultWith(odometry));
   const std::vector<double> row = lastRow(record.estimatorCsv());
-  ASSERT_EQ(row.size(), 13u);
+  ASSERT_EQ(row.size(), 15u);
   constexpr double kWritten = 1e-6;  // six digits are written
   EXPECT_NEAR(row[5], 0.2, kWritten);
   EXPECT_NEAR(row[6], 0.0, kWritten);
@@ -84,6 +86,8 @@ TEST(FrameRecord, DeviationsAreThoseOfTheWorldsAxes) {
   EXPECT_NEAR(row[8], 0.1 * 180.0 / M_PI, kWritten);
   EXPECT_NEAR(row[9], 0.0, kWritten);
   EXPECT_NEAR(row[11], 0.5, kWritten);
+  EXPECT_NEAR(row[13], -0.047, kWritten);
+  EXPECT_NEAR(row[14], 0.002, kWritten);
 }
 
 TEST(FrameRecord, RoundingBelowZeroIsNoDeviation) {

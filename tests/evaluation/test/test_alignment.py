@@ -6,7 +6,7 @@ import numpy as np
 from support import IDENTITY, about, matrix, moved, trajectory, wandering
 
 from vins_evaluation import rotations
-from vins_evaluation.alignment import KINDS, Alignment, align, relative_scale
+from vins_evaluation.alignment import KINDS, Alignment, align, laid_onto_first, relative_scale
 from vins_evaluation.errors import EvaluationError
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
@@ -165,6 +165,17 @@ class RelativeScaleTest(unittest.TestCase):
         poses = trajectory(SQUARE)
         turned = Alignment("se3", 1.0, matrix(UPRIGHT)).apply(poses)
         np.testing.assert_allclose(turned.quaternions, np.tile(UPRIGHT, (4, 1)), atol=1e-14)
+
+
+class LaidOntoFirstTest(unittest.TestCase):
+    def test_first_pose_coincides_and_what_follows_keeps_its_error(self):
+        truth = wandering()
+        turned = moved(truth, UPRIGHT, AWAY, 1.0)
+        turned.positions[-1] += [0.0, 0.0, 0.5]
+        laid = laid_onto_first(truth, turned)
+        errors = np.linalg.norm(laid.positions - truth.positions, axis=1)
+        np.testing.assert_allclose(errors[:-1], 0.0, atol=1e-9)
+        self.assertAlmostEqual(errors[-1], 0.5)
 
 
 if __name__ == "__main__":

@@ -148,3 +148,16 @@ def _umeyama(kind, truth, estimate):
     scale = scale if kind == "sim3" else 1.0
     translation = truth.mean(axis=0) - scale * rotation @ estimate.mean(axis=0)
     return Alignment(kind, scale, rotation, translation)
+
+
+def laid_onto_first(truth, estimate):
+    """The estimate, moved so that its first pose has the truth's position and yaw.
+
+    From there on the error grows as the covariance says; the best fit over the whole path would
+    hide that.
+    """
+    turn = rotations.multiply(truth.quaternions[0], rotations.conjugate(estimate.quaternions[0]))
+    yaw, _ = rotations.yaw_and_tilt(turn)
+    c, s = np.cos(yaw), np.sin(yaw)
+    R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return Alignment("posyaw", 1.0, R, truth.positions[0] - R @ estimate.positions[0]).apply(estimate)

@@ -9,8 +9,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from vins_evaluation import evaluation, rotations
-from vins_evaluation.alignment import Alignment
+from vins_evaluation import alignment, evaluation, rotations
 from vins_evaluation.errors import EvaluationError
 from vins_evaluation.metrics import AbsoluteErrors
 from vins_evaluation.style import COLOURS, STYLE, TRUTH_COLOUR
@@ -72,7 +71,7 @@ def errors(run):
     """Error of position and yaw over time, and three standard deviations of each."""
     table = run.table("estimator")
     truth, estimate, kept = _associated(run, table["stamp"])
-    absolute = AbsoluteErrors(truth, _laid_onto_first(truth, estimate))
+    absolute = AbsoluteErrors(truth, alignment.laid_onto_first(truth, estimate))
     seconds = (truth.stamps - truth.stamps[0]) / NANOSECONDS
     rows = [("%s [cm]" % "xyz"[i], 100.0 * absolute.vectors[:, i],
              100.0 * table["sigma_p" + "xyz"[i]][kept]) for i in range(3)]
@@ -247,19 +246,6 @@ def _associated(run, stamps):
         raise EvaluationError("%s: has no rotation at the odometry's times"
                               % run.file("ground_truth.txt"))
     return associated, estimate.selected(served), served
-
-
-def _laid_onto_first(truth, estimate):
-    """The estimate, moved so that its first pose has the truth's position and yaw.
-
-    From there on the error grows as the covariance says; the best fit over the whole path would
-    hide that.
-    """
-    turn = rotations.multiply(truth.quaternions[0], rotations.conjugate(estimate.quaternions[0]))
-    yaw, _ = rotations.yaw_and_tilt(turn)
-    c, s = np.cos(yaw), np.sin(yaw)
-    R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return Alignment("posyaw", 1.0, R, truth.positions[0] - R @ estimate.positions[0]).apply(estimate)
 
 
 def _velocities(run):

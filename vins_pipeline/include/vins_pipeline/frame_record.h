@@ -23,11 +23,12 @@ class FrameRecord {
   /// estimator.csv, a line for each odometry: stamp [ns], sequence, landmarks and rejected
   /// observations of the window, 1 for a keyframe, and standard deviations: of the position in the
   /// odometry's world [m], of yaw about its z and of tilt about its x and y together [deg], of the
-  /// velocity along its axes [m/s].
+  /// velocity along its axes [m/s]; last the time offset td and its standard deviation [s], 0 where
+  /// it is not estimated.
   const std::string& estimatorCsv() const { return estimator_csv_; }
 
  private:
-  void add(const estimator::Odometry& odometry, const estimator::EstimatorStatistics& statistics);
+  void add(const estimator::Odometry& odometry, const estimator::EstimatorResult& result);
 
   std::string tracker_csv_;
   std::string estimator_csv_;
