@@ -13,6 +13,7 @@
 #include "vins_estimator/inertial/measurement_queue.h"
 #include "vins_estimator/initialization/extrinsic_rotation.h"
 #include "vins_estimator/initialization/initializer.h"
+#include "vins_estimator/initialization/time_offset_search.h"
 #include "vins_estimator/visual/rolling_shutter.h"
 #include "window_tracker.h"
 
@@ -49,6 +50,9 @@ TurnCalibratorOptions calibratorOptions(const EstimatorOptions& options) {
 /// From a keyframe's image to the use of its loop: three images at 20 Hz, in which a place is
 /// recognised on any machine that keeps up [s].
 constexpr double kLoopDelay = 0.15;
+
+/// Least deviation of a time offset that the search has found [s].
+constexpr double kLeastTimeSigma = 3e-3;
 
 void moveEvents(std::vector<Event> events, EstimatorResult* result) {
   for (Event& event : events) result->events.push_back(std::move(event));
@@ -120,7 +124,10 @@ class Estimator::Implementation {
     continuation_.clear();
     credible_.reset();
     extrinsic_is_known_ = options_.extrinsic != ExtrinsicMode::kUnknown;
-    calibrator_.clear();
+    calibrator_ =
+        TurnCalibrator(calibratorOptions(options_), {options_.T_bc.rotation, options_.td});
+    time_offset_search_.clear();
+    time_offset_is_known_ = false;
   }
 
  private:
@@ -180,10 +187,39 @@ class Estimator::Implementation {
         atFirstRow(measurements->frame, shutter, gyro, meanRate(measurements->imu) - bias);
   }
 
+  /// Looks for the time offset, once, where it is to be estimated and may be far from the guess.
+  void searchTimeOffset(const FrameMeasurements& measurements, EstimatorResult* result) {
+    if (!options_.estimate_td || !extrinsic_is_known_ || time_offset_is_known_) return;
+    const RigCalibration& rig = tracker_.window().rig;
+    const std::optional<TimeOffset> found =
+        time_offset_search_.addFrame(measurements, rig.T_bc.rotation);
+    if (!found) return;
+    time_offset_is_known_ = true;
+    // Turns that parallax bends make the offset look better known than it is.
+    const double sigma = std::max(kLeastTimeSigma, 3.0 * found->sigma);
+    const bool is_new = std::abs(found->td - rig.td) > sigma;
+    result->events.push_back({result->stamp,
+                              Severity::kInfo,
+                              "time_offset_found",
+                              "the time offset of camera and IMU is known from their turns",
+                              {{"td_s", found->td},
+                               {"sigma_s", found->sigma},
+                               {"pairs", static_cast<double>(found->pairs)},
+                               {"misfit", found->misfit}}});
+    if (!is_new) return;
+    // Frames before were timed otherwise, and do not go with those to come.
+    tracker_.setTimeOffset(found->td, sigma);
+    initializer_.clear();
+    TurnCalibratorOptions options = calibratorOptions(options_);
+    options.prior.td_sigma = sigma;
+    calibrator_ = TurnCalibrator(options, {rig.T_bc.rotation, found->td});
+  }
+
   /// Watches the rig turn, where camera and IMU stand to each other in a way that is not quite
   /// known. Returns whether enough is known of it to begin.
   bool calibrate(const FrameMeasurements& measurements, EstimatorResult* result) {
     const RigCalibration& rig = tracker_.window().rig;
+    searchTimeOffset(measurements, result);
     const std::optional<TurnCalibration> found = calibrator_.addFrame(measurements, rig.td);
     moveEvents(calibrator_.takeEvents(), result);
     if (!found) return extrinsic_is_known_;
@@ -294,6 +330,7 @@ class Estimator::Implementation {
   EstimatorOptions options_;
   MeasurementQueue queue_;
   TurnCalibrator calibrator_;
+  TimeOffsetSearch time_offset_search_;
   Initializer initializer_;
   StillnessDetector stillness_;
   TrackWatch track_watch_;
@@ -306,6 +343,7 @@ class Estimator::Implementation {
   int backlog_ = 0;
   std::deque<LoopMatch> waiting_loops_;  ///< of keyframes that have just become such
   bool extrinsic_is_known_ = true;
+  bool time_offset_is_known_ = false;  ///< the search has answered
 };
 
 Estimator::Estimator(const EstimatorOptions& options) {

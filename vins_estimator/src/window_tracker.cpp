@@ -72,6 +72,11 @@ void WindowTracker::setRig(const TurnCalibration& found) {
   }
 }
 
+void WindowTracker::setTimeOffset(double td, double sigma) {
+  window_.rig.td = td;
+  window_.rig_covariance(6, 6) = sigma * sigma;
+}
+
 void WindowTracker::start(const Initialization& initialization) {
   startWindow(initialization, next_frame_id_, &window_);
   next_frame_id_ += static_cast<FrameId>(initialization.frames.size());

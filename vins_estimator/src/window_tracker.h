@@ -29,6 +29,9 @@ class WindowTracker {
   /// What the rig's turns have told of it. Where the camera's pose is unknown, its place still is.
   void setRig(const TurnCalibration& found);
 
+  /// The time offset as the search has found it, with its deviation [s].
+  void setTimeOffset(double td, double sigma);
+
   void start(const Initialization& initialization);
 
   /// A verified loop, for the next adjustments; without effect where its query has left.
