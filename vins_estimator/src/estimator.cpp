@@ -13,6 +13,7 @@
 #include "vins_estimator/inertial/measurement_queue.h"
 #include "vins_estimator/initialization/extrinsic_rotation.h"
 #include "vins_estimator/initialization/initializer.h"
+#include "vins_estimator/initialization/scale_convergence.h"
 #include "vins_estimator/initialization/time_offset_search.h"
 #include "vins_estimator/visual/rolling_shutter.h"
 #include "window_tracker.h"
@@ -111,6 +112,7 @@ class Estimator::Implementation {
     }
     for (Keyframe& keyframe : result.keyframes) keyframe.world = world_;
     result.status = status_;
+    result.scale_sigma = convergence_.scaleSigma();
     result.rig = tracker_.window().rig;
     if (tracker_.window().refines_rig) result.rig_covariance = tracker_.window().rig_covariance;
     return result;
@@ -128,6 +130,7 @@ class Estimator::Implementation {
         TurnCalibrator(calibratorOptions(options_), {options_.T_bc.rotation, options_.td});
     time_offset_search_.clear();
     time_offset_is_known_ = false;
+    search_begin_.reset();
   }
 
  private:
@@ -141,6 +144,7 @@ class Estimator::Implementation {
     track_watch_.clear();
     tracker_.clear();
     waiting_loops_.clear();
+    convergence_.clear();
   }
 
   /// Hands the loops on that are due. A loop waits for a fixed time after its query keyframe, so
@@ -187,16 +191,29 @@ class Estimator::Implementation {
         atFirstRow(measurements->frame, shutter, gyro, meanRate(measurements->imu) - bias);
   }
 
+  /// A moving start with a wrong time offset is a wrong start: for some seconds it waits for the
+  /// search, which needs a turn.
+  bool awaitsTimeOffset(Stamp now) {
+    constexpr double kPatience = 3.0;  // [s]
+    if (!searchesTimeOffset()) return false;
+    if (!search_begin_ || now < *search_begin_) search_begin_ = now;
+    return toSeconds(now - *search_begin_) < kPatience;
+  }
+
+  bool searchesTimeOffset() const {
+    return options_.estimate_td && extrinsic_is_known_ && !time_offset_is_known_;
+  }
+
   /// Looks for the time offset, once, where it is to be estimated and may be far from the guess.
   void searchTimeOffset(const FrameMeasurements& measurements, EstimatorResult* result) {
-    if (!options_.estimate_td || !extrinsic_is_known_ || time_offset_is_known_) return;
+    if (!searchesTimeOffset()) return;
     const RigCalibration& rig = tracker_.window().rig;
     const std::optional<TimeOffset> found =
         time_offset_search_.addFrame(measurements, rig.T_bc.rotation);
     if (!found) return;
     time_offset_is_known_ = true;
     // Turns that parallax bends make the offset look better known than it is.
-    const double sigma = std::max(kLeastTimeSigma, 3.0 * found->sigma);
+    const double sigma = std::max(kLeastTimeSigma, 2.0 * found->sigma);
     const bool is_new = std::abs(found->td - rig.td) > sigma;
     result->events.push_back({result->stamp,
                               Severity::kInfo,
@@ -247,27 +264,63 @@ class Estimator::Implementation {
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
     continuation_.addFrame(measurements);
     if (tracker_.window().refines_rig && !calibrate(measurements, result)) return;
-    std::optional<Initialization> initialization = initializer_.addFrame(measurements);
+    std::optional<Initialization> initialization =
+        initializer_.addFrame(measurements, !awaitsTimeOffset(result->stamp));
     moveEvents(initializer_.takeEvents(), result);
     if (!initialization) return;
     continuation_.apply(&*initialization);
-    tracker_.start(*initialization);
     status_ = EstimatorStatus::kTracking;
-    const NavState first = tracker_.window().frames.back().state.value();
-    if (!adjust(first, false, result)) return;
+    convergence_.begin(result->stamp, initialization->scale_sigma);
+    if (!beginWindow(*initialization, measurements, result)) return;
     continuation_.clear();
-    report(measurements, result);
     result->events.push_back(
         {result->stamp,
          Severity::kInfo,
          "initialized",
          initialization->at_rest ? "initialized at rest" : "initialized moving",
          {{"frames", static_cast<double>(initialization->frames.size())},
-          {"sequence", static_cast<double>(sequence_)}}});
+          {"sequence", static_cast<double>(sequence_)},
+          {"scale_sigma_percent", 100.0 * initialization->scale_sigma}}});
+  }
+
+  /// Fills the empty window with first states, and solves it.
+  bool beginWindow(const Initialization& initialization, const FrameMeasurements& measurements,
+                   EstimatorResult* result) {
+    tracker_.start(initialization);
+    const NavState first = tracker_.window().frames.back().state.value();
+    if (!adjust(first, false, result)) return false;
+    report(measurements, result);
     tracker_.keepFirstFrames(sequence_, result);
+    return true;
+  }
+
+  /// Solves the start again while its scale converges; the window begins anew with a solution that
+  /// knows it clearly better, where the body stands now. Returns whether it has.
+  bool refineStart(const FrameMeasurements& measurements, EstimatorResult* result) {
+    if (!convergence_.scaleSigma()) return false;
+    initializer_.remember(measurements);
+    if (!convergence_.isDue(result->stamp)) return false;
+    initializer_.setExtrinsic(tracker_.window().rig.T_bc);
+    std::optional<Initialization> again = initializer_.solveAgain();
+    if (!again || !convergence_.take(again->scale_sigma)) return false;
+    const WindowFrame& before = tracker_.window().frames.back();
+    Preintegration imu(options_.imu, before.state.value().accelerometer_bias,
+                       before.state.value().gyroscope_bias);
+    imu.integrate(measurements.imu);
+    moveNewestTo(imu.predict(before.state.value(), tracker_.window().g_w), before.covariance,
+                 &*again);
+    tracker_.clear();
+    result->events.push_back({result->stamp,
+                              Severity::kInfo,
+                              "start_refined",
+                              "the start was solved again with more motion",
+                              {{"scale_sigma_percent", 100.0 * again->scale_sigma}}});
+    beginWindow(*again, measurements, result);
+    return true;
   }
 
   void track(const FrameMeasurements& measurements, EstimatorResult* result) {
+    if (refineStart(measurements, result)) return;
     const NavState predicted = tracker_.append(measurements, stillness_.isStill());
     const auto features = static_cast<int>(measurements.frame.observations.size());
     const std::optional<Event> event = track_watch_.addFrame(result->stamp, features);
@@ -344,6 +397,8 @@ class Estimator::Implementation {
   std::deque<LoopMatch> waiting_loops_;  ///< of keyframes that have just become such
   bool extrinsic_is_known_ = true;
   bool time_offset_is_known_ = false;  ///< the search has answered
+  std::optional<Stamp> search_begin_;  ///< of the first frame that it could look at
+  ScaleConvergence convergence_;
 };
 
 Estimator::Estimator(const EstimatorOptions& options) {

@@ -56,6 +56,8 @@ struct EstimatorResult {
   Stamp stamp = 0;  ///< the frame's
   EstimatorStatus status = EstimatorStatus::kInitializing;
   std::optional<Odometry> odometry;  ///< nothing while initializing
+  /// Relative deviation of the scale while that converges after a moving start; nullopt otherwise.
+  std::optional<double> scale_sigma;
   std::vector<Event> events;
   std::vector<Keyframe> keyframes;       ///< have just become such
   std::vector<KeyframePoseUpdate> left;  ///< keyframes that left the window, with their last pose

@@ -30,6 +30,21 @@ NavState moved(const Eigen::Quaterniond& turn, const Eigen::Vector3d& shift,
   return result;
 }
 
+/// Moves all states by the yaw and the shift that take one state to another.
+void moveAll(const NavState& from, const NavState& to, Initialization* initialization) {
+  const Eigen::Quaterniond turn =
+      yawRotation(yawOf(to.T_wb.rotation * from.T_wb.rotation.conjugate()));
+  const Eigen::Vector3d shift = to.T_wb.position - turn * from.T_wb.position;
+  for (InitialFrame& frame : initialization->frames) frame.state = moved(turn, shift, frame.state);
+  initialization->mean = moved(turn, shift, initialization->mean);
+}
+
+void addDoubt(double position_sigma, double yaw_sigma, Initialization* initialization) {
+  auto& sigma = initialization->sigma;
+  sigma.segment<3>(kPosition).setConstant(std::hypot(sigma(kPosition), position_sigma));
+  sigma(kRotation + 2) = std::hypot(sigma(kRotation + 2), yaw_sigma);
+}
+
 }  // namespace
 
 void Continuation::start(Stamp stamp, const NavState& state, const Matrix15d& covariance) {
@@ -74,14 +89,16 @@ void Continuation::apply(Initialization* initialization) const {
   if (!isActive() || initialization->frames.empty()) return;
   const NavState first = initialization->frames.front().state;
   const Entry& last = at(initialization->frames.front().features.stamp);
-  const Eigen::Quaterniond turn =
-      yawRotation(yawOf(last.state.T_wb.rotation * first.T_wb.rotation.conjugate()));
-  const Eigen::Vector3d shift = last.state.T_wb.position - turn * first.T_wb.position;
-  for (InitialFrame& frame : initialization->frames) frame.state = moved(turn, shift, frame.state);
-  initialization->mean = moved(turn, shift, initialization->mean);
-  auto& sigma = initialization->sigma;
-  sigma.segment<3>(kPosition).setConstant(std::hypot(sigma(kPosition), last.position_sigma));
-  sigma(kRotation + 2) = std::hypot(sigma(kRotation + 2), last.yaw_sigma);
+  moveAll(first, last.state, initialization);
+  addDoubt(last.position_sigma, last.yaw_sigma, initialization);
+}
+
+void moveNewestTo(const NavState& newest, const Matrix15d& covariance,
+                  Initialization* initialization) {
+  if (initialization->frames.empty()) return;
+  moveAll(NavState(initialization->frames.back().state), newest, initialization);
+  const double position_sigma = std::sqrt(covariance.diagonal().head<3>().maxCoeff());
+  addDoubt(position_sigma, yawSigma(newest.T_wb.rotation, covariance), initialization);
 }
 
 }  // namespace vins::estimator

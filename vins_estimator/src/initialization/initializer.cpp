@@ -11,7 +11,7 @@ namespace vins::estimator {
 namespace {
 
 constexpr double kShorterSpan = 0.7;  ///< of the next shorter span that is tried
-constexpr int kSpansTried = 2;        ///< in one attempt
+constexpr int kSpansTried = 3;        ///< in one attempt
 constexpr double kJitter = 0.01;      ///< of camera periods [s]
 
 InitializerOptions checked(InitializerOptions options) {
@@ -71,25 +71,38 @@ void Initializer::forgetOld() {
   while (bufferedSpan() > longest) buffer_.pop_front();
 }
 
-std::optional<Initialization> Initializer::addFrame(const FrameMeasurements& measurements) {
+void Initializer::push(const FrameMeasurements& measurements) {
   const bool follows = !measurements.is_first && !measurements.restarted &&
                        measurements.longest_gap <= options_.max_gap;
   if (!follows) clear();
   buffer_.push_back(measurements);
   forgetOld();
+}
+
+void Initializer::remember(const FrameMeasurements& measurements) { push(measurements); }
+
+std::optional<Initialization> Initializer::solveAgain() {
+  if (buffer_.empty() || bufferedSpan() + kJitter < options_.min_span) return std::nullopt;
+  return startMoving();
+}
+
+std::optional<Initialization> Initializer::addFrame(const FrameMeasurements& measurements,
+                                                    bool may_move) {
+  push(measurements);
   stillness_.addFrame(measurements.frame, measurements.imu);
 
   std::optional<Initialization> found;
   --frames_until_attempt_;
   if (stillness_.isStill()) {
     found = startAtRest();
-  } else if (frames_until_attempt_ <= 0 && bufferedSpan() + kJitter >= options_.min_span) {
+  } else if (may_move && frames_until_attempt_ <= 0 &&
+             bufferedSpan() + kJitter >= options_.min_span) {
     frames_until_attempt_ = options_.attempt_interval;
     found = startMoving();
   }
-  if (found) {
+  if (found && found->at_rest) {
     clear();
-  } else {
+  } else if (!found) {
     report(measurements.frame.stamp);
   }
   return found;
@@ -200,6 +213,7 @@ std::optional<Initialization> Initializer::alignFrames(const FrameIndices& chose
 Initialization Initializer::toInitialization(const FrameIndices& chosen,
                                              const Alignment& alignment) const {
   Initialization initialization;
+  initialization.scale_sigma = alignment.scale_sigma;
   const JointRefinementOptions& joint = options_.alignment.joint;
   constexpr double kUnknownTilt = 1.0;       // [rad]
   constexpr double kUnknownVelocity = 10.0;  // [m/s]

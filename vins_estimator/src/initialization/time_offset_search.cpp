@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "vins_core/so3.h"
@@ -141,7 +142,9 @@ std::optional<TimeOffset> TimeOffsetSearch::search(const Eigen::Quaterniond& R_b
   }
   const auto least =
       static_cast<std::size_t>(std::min_element(misfits.begin(), misfits.end()) - misfits.begin());
-  if (least == 0 || least + 1 == misfits.size() || !isDistinct(misfits, least)) return std::nullopt;
+  if (least == 0 || least + 1 == misfits.size() || !isDistinct(misfits, least, turns.size())) {
+    return std::nullopt;
+  }
   const double curvature = misfits[least - 1] - 2.0 * misfits[least] + misfits[least + 1];
   if (!(curvature > 0.0)) return std::nullopt;
   double total = 0.0;
@@ -158,17 +161,19 @@ std::optional<TimeOffset> TimeOffsetSearch::search(const Eigen::Quaterniond& R_b
   return is_good ? std::make_optional(found) : std::nullopt;
 }
 
-/// No minimum but the least one and its slopes comes near to it.
-bool TimeOffsetSearch::isDistinct(const std::vector<double>& misfits, std::size_t least) const {
-  const double limit = options_.distinct * misfits[least];
-  std::size_t low = least, high = least;
-  while (low > 0 && misfits[low - 1] >= misfits[low]) --low;
-  while (high + 1 < misfits.size() && misfits[high + 1] >= misfits[high]) ++high;
-  const auto is_near = [limit](double misfit) { return misfit < limit; };
-  const auto begin = misfits.begin();
-  return std::none_of(begin, begin + static_cast<std::ptrdiff_t>(low), is_near) &&
-         std::none_of(begin + static_cast<std::ptrdiff_t>(high), misfits.end(), is_near) &&
-         misfits[low] >= limit && misfits[high] >= limit;
+/// The likelihood of all offsets beyond the neighbourhood is far below that of the least misfit.
+/// With unknown noise its logarithm is -3 n / 2 ln(misfit) for n turns; half of that is counted, as
+/// turns in a row are bent by the same parallax.
+bool TimeOffsetSearch::isDistinct(const std::vector<double>& misfits, std::size_t least,
+                                  std::size_t turns) const {
+  const auto reach = static_cast<std::size_t>(options_.neighbourhood / options_.step);
+  double other = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < misfits.size(); ++i) {
+    if (i + reach < least || i > least + reach) other = std::min(other, misfits[i]);
+  }
+  const double log_ratio =
+      0.75 * static_cast<double>(turns) * std::log(other / std::max(misfits[least], 1e-15));
+  return log_ratio >= options_.min_log_ratio;
 }
 
 }  // namespace vins::estimator

@@ -45,4 +45,9 @@ class Continuation {
   std::deque<Entry> entries_;
 };
 
+/// Moves new first states so that the newest of them stands where `newest` does, by position and
+/// yaw, with deviations by its `covariance`.
+void moveNewestTo(const NavState& newest, const Matrix15d& covariance,
+                  Initialization* initialization);
+
 }  // namespace vins::estimator

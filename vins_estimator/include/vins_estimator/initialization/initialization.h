@@ -19,6 +19,7 @@ struct InitialFrame {
 /// The states with which the estimator starts.
 struct Initialization {
   std::vector<InitialFrame> frames;  ///< oldest first; at most as many as the options say
+  double scale_sigma = 0.0;          ///< relative deviation of the scale; 0 at rest
   bool at_rest = false;  ///< all frames stood still: velocities are zero, positions equal
   /// What was known of the first state before the frames' own measurements, which the window counts
   /// itself: mean and deviations of its errors by ErrorState, those of the rotation about the

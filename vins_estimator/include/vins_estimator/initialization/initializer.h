@@ -56,8 +56,16 @@ class Initializer {
 
   /// Takes the next frame; the first states if they are found now, the newest frame's the last of
   /// them. Frames that do not follow the ones before (first of a recording, hole in the IMU) begin
-  /// anew. After a success it has forgotten all measurements.
-  std::optional<Initialization> addFrame(const FrameMeasurements& measurements);
+  /// anew. After a start at rest it has forgotten all measurements; those of a moving start stay.
+  /// `may_move`: false where only a start at rest is wanted.
+  std::optional<Initialization> addFrame(const FrameMeasurements& measurements,
+                                         bool may_move = true);
+
+  /// After a moving start: takes the next frame without looking for a start.
+  void remember(const FrameMeasurements& measurements);
+
+  /// Solves the moving start again with all frames that are remembered, the newest one included.
+  std::optional<Initialization> solveAgain();
 
   /// What there is to tell since the last call.
   std::vector<Event> takeEvents();
@@ -84,6 +92,7 @@ class Initializer {
   std::vector<StructureFrame> structureFrames(const FrameIndices& chosen,
                                               const std::vector<Preintegration>& imu) const;
   Initialization toInitialization(const FrameIndices& chosen, const Alignment& alignment) const;
+  void push(const FrameMeasurements& measurements);
   void forgetOld();
   void report(Stamp stamp);
   double bufferedSpan() const;

@@ -14,15 +14,15 @@ namespace vins::estimator {
 
 /// Options of TimeOffsetSearch.
 struct TimeOffsetSearchOptions {
-  double max_offset = 0.25;   ///< largest |td| that is looked for [s]
-  double step = 2.5e-3;       ///< of the grid of offsets [s]
-  double window = 4.0;        ///< of image pairs that are kept [s]
-  int min_shared = 12;        ///< features that two images share
-  int min_pairs = 12;         ///< of images, for an answer
-  double max_sigma = 2.5e-3;  ///< of an answer [s]
-  /// A second minimum of the misfit must be higher than the least one by this factor.
-  double distinct = 1.5;
-  double max_misfit = 0.3;  ///< share of the camera's turns that the answer leaves unexplained
+  double max_offset = 0.25;     ///< largest |td| that is looked for [s]
+  double step = 2.5e-3;         ///< of the grid of offsets [s]
+  double window = 4.0;          ///< of image pairs that are kept [s]
+  int min_shared = 12;          ///< features that two images share
+  int min_pairs = 12;           ///< of images, for an answer
+  double max_sigma = 0.01;      ///< of an answer [s]
+  double neighbourhood = 0.04;  ///< offsets nearer than this are one answer [s]
+  double min_log_ratio = 3.5;   ///< of the answer's likelihood against that of any other
+  double max_misfit = 0.3;      ///< share of the camera's turns that the answer leaves unexplained
 };
 
 /// A time offset found by TimeOffsetSearch.
@@ -70,7 +70,7 @@ class TimeOffsetSearch {
   double misfitAt(double td, const std::vector<CameraTurn>& turns,
                   const Eigen::Quaterniond& R_bc) const;
   std::optional<TimeOffset> search(const Eigen::Quaterniond& R_bc) const;
-  bool isDistinct(const std::vector<double>& misfits, std::size_t least) const;
+  bool isDistinct(const std::vector<double>& misfits, std::size_t least, std::size_t turns) const;
 
   TimeOffsetSearchOptions options_;
   std::deque<Angle> angles_;

@@ -20,9 +20,9 @@ struct AlignmentOptions {
   double max_rotation_residual = 0.02;  ///< of the gyroscope against the images: rms [rad]
   double max_gravity_error = 0.1;       ///< of its length before that is fixed, share
   double max_linear_scale_sigma = 0.5;  ///< relative, of the linear solution
-  double max_scale_sigma = 0.025;       ///< relative, of the joint refinement
+  double max_scale_sigma = 0.25;        ///< relative, of the joint refinement
   double max_visual_rms = 1.5;          ///< per axis [deviations]
-  double max_imu_chi2 = 4.0;            ///< per degree of freedom
+  double max_imu_chi2 = 16.0;           ///< per degree of freedom
   double max_speed = 30.0;              ///< [m/s]
   int min_landmarks = 20;               ///< after the joint refinement
   JointRefinementOptions joint;

@@ -15,9 +15,9 @@ namespace vins::estimator {
 
 /// Options of buildStructure().
 struct VisualStructureOptions {
-  int min_shared = 30;               ///< features that the pair shares, at least one more
-  double min_parallax = 20.0;        ///< of the pair, compensated by the gyroscope: median [px]
-  double min_own_parallax = 5.0;     ///< what the best rotation leaves of it: median [px]
+  int min_shared = 20;               ///< features that the pair shares, at least one more
+  double min_parallax = 10.0;        ///< of the pair, compensated by the gyroscope: median [px]
+  double min_own_parallax = 2.5;     ///< what the best rotation leaves of it: median [px]
   double max_gyroscope_bias = 0.2;   ///< beyond it, images and gyroscope disagree [rad/s]
   double rotation_tolerance = 0.05;  ///< the same, independent of time [rad]
   int max_pairs = 3;                 ///< tried
