@@ -33,9 +33,11 @@ void RunResults::add(const PipelineResult& result) {
   ++images_;
   features_ = result.frame ? result.frame->observations.size() : 0;
   for (const estimator::EstimatorResult& estimate : result.estimates) add(estimate);
-  for (const Event& event : result.events) {
-    if (event.severity != Severity::kInfo) ++warnings_[event.code];
-  }
+  for (const Event& event : result.events) add(event);
+}
+
+void RunResults::add(const Event& event) {
+  if (event.severity != Severity::kInfo) ++warnings_[event.code];
 }
 
 void RunResults::add(const estimator::EstimatorResult& estimate) {

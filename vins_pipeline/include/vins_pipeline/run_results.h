@@ -20,6 +20,8 @@ class RunResults {
  public:
   void add(const PipelineResult& result);
   void add(const RecordedTruth& truth);
+  /// Counts an event that no stage has made.
+  void add(const Event& event);
 
   /// TUM's form: stamp [s] tx ty tz [m] qx qy qz qw, a line for each odometry.
   const std::string& vioLive() const { return vio_live_; }
