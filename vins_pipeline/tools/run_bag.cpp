@@ -151,6 +151,13 @@ void work(vins::pipeline::Pipeline* pipeline, Run* run) {
     run->picture.add(*result, *run->options.cameras.front());
     run->loop_results.add(*result);
   }
+  const std::vector<vins::Event> findings = pipeline->takeInputEvents();
+  run->record.addEvents(findings);
+  run->inputs.addEvents(findings);
+  for (const vins::Event& event : findings) {
+    run->results.add(event);
+    std::cerr << event << "\n";
+  }
 }
 
 void closeGraph(vins::pipeline::Pipeline* pipeline, Run* run) {
