@@ -11,6 +11,7 @@ void InputAccount::addImu(Stamp stamp) { last_imu_ = std::max(stamp, last_imu_.v
 
 void InputAccount::addImage(Stamp stamp) {
   ++accepted_;
+  first_image_ = std::min(stamp, first_image_.value_or(stamp));
   last_image_ = std::max(stamp, last_image_.value_or(stamp));
 }
 
@@ -37,6 +38,8 @@ void InputAccount::requireImages() const {
 std::optional<Stamp> InputAccount::imuEnd() const {
   constexpr Stamp kTolerance = 500'000'000;  // [ns]
   if (!last_imu_ || !last_image_ || *last_image_ <= *last_imu_ + kTolerance) return std::nullopt;
+  // Clocks that are apart are another finding.
+  if (*first_image_ > *last_imu_ + kTolerance) return std::nullopt;
   return last_imu_;
 }
 

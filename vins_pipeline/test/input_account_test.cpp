@@ -41,6 +41,14 @@ TEST(InputAccount, KnowsWhenTheImuEnded) {
   EXPECT_EQ(account.imuEnd(), 10 * kSecond);
 }
 
+TEST(InputAccount, ClocksThatAreApartAreNoEnd) {
+  InputAccount account;
+  account.addImu(10 * kSecond);
+  account.addImage(3600 * kSecond);
+  account.addImage(3601 * kSecond);
+  EXPECT_FALSE(account.imuEnd());
+}
+
 TEST(InputAccount, KeepsTheLastReasonOfEachKind) {
   InputAccount account;
   account.addEvents({{0, Severity::kWarning, "init_little_parallax", "old", {}},

@@ -126,24 +126,9 @@ void feed(const vins::pipeline::Record& message, vins::pipeline::Pipeline* pipel
   }
 }
 
-/// Wall clock and CPU time of the odometry's stages together, where both have worked.
-void addFrameDuration(const vins::pipeline::PipelineResult& result,
-                      vins::pipeline::RunRecord* record) {
-  vins::pipeline::Duration frame;
-  int stages = 0;
-  for (const auto& [stage, duration] : result.durations) {
-    record->addDuration(stage, duration);
-    if (stage != "tracker" && stage != "estimator") continue;
-    frame.wall += duration.wall;
-    frame.cpu += duration.cpu;
-    ++stages;
-  }
-  if (stages > 1) record->addDuration("tracker+estimator", frame);
-}
-
 void work(vins::pipeline::Pipeline* pipeline, Run* run) {
   while (const auto result = pipeline->process()) {
-    addFrameDuration(*result, &run->record);
+    run->record.addFrame(result->durations);
     run->record.addEvents(result->events);
     run->inputs.addEvents(result->events);
     run->results.add(*result);
@@ -304,10 +289,11 @@ void report(const po::variables_map& values, const fs::path& folder, const Run& 
   const std::string truth = prepareTruth(values["ground-truth"].as<std::string>(), folder, run);
   if (truth.empty() || run.results.odometries() == 0) return;
   std::cout << "\n";
-  std::vector<std::string> estimates = {(folder / "vio_live.txt").string()};
+  std::vector<std::string> estimates = {
+      vins::pipeline::atImuTime(folder / "vio_live.txt", run.results)};
   if (run.graph) {
-    estimates.push_back((folder / "loop_live.txt").string());
-    estimates.push_back((folder / "loop_final.txt").string());
+    estimates.push_back(vins::pipeline::atImuTime(folder / "loop_live.txt", run.results));
+    estimates.push_back(vins::pipeline::atImuTime(folder / "loop_final.txt", run.results));
   }
   const bool is_made = vins::pipeline::makeReport(
       {truth, estimates, values["align"].as<std::string>(), (folder / "report.html").string(),
@@ -315,15 +301,8 @@ void report(const po::variables_map& values, const fs::path& folder, const Run& 
   if (is_made) std::cout << "report        " << (folder / "report.html").string() << "\n";
 }
 
-void requireAlignment(const std::string& name) {
-  for (const char* known : {"none", "posyaw", "se3", "sim3"}) {
-    if (name == known) return;
-  }
-  throw vins::InputError("--align: found '" + name + "'; allowed: none, posyaw, se3, sim3");
-}
-
 vins::ToolExit runBag(const po::variables_map& values) {
-  requireAlignment(values["align"].as<std::string>());
+  vins::pipeline::requireAlignment(values["align"].as<std::string>());
   // One thread: the same bytes everywhere, and the CPU time of the work itself.
   cv::setNumThreads(1);
   Run run;

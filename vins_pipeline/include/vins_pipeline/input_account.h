@@ -32,7 +32,8 @@ class InputAccount {
   /// Throws InputError with the first reason where every image has been refused.
   void requireImages() const;
 
-  /// When the IMU ended, where images go on for more than half a second behind that [ns].
+  /// When the IMU ended, where images of its time go on for more than half a second behind that
+  /// [ns].
   std::optional<Stamp> imuEnd() const;
 
   /// Lines for a summary: damage, refused images, an IMU that ended early; empty where all is well.
@@ -45,7 +46,7 @@ class InputAccount {
   std::size_t accepted_ = 0;
   std::size_t refused_ = 0;
   std::string first_reason_;
-  std::optional<Stamp> last_imu_, last_image_;
+  std::optional<Stamp> last_imu_, first_image_, last_image_;
   std::map<std::string, std::string> reasons_;  ///< by the event's code
 };
 

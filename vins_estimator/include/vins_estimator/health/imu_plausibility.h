@@ -19,7 +19,7 @@ struct ImuPlausibilityOptions {
   double gravity = 9.81;          ///< g_norm [m/s^2]
   double window = 2.0;            ///< samples judged together [s]
   double max_rate = 35.0;         ///< of consumer gyroscopes: 2000 degrees per second [rad/s]
-  double max_mean_rate = 12.0;    ///< over a window: two turns per second [rad/s]
+  double max_mean_rate = 6.5;     ///< over a window: more than a turn per second [rad/s]
   double max_clock_offset = 5.0;  ///< between the newest image and IMU sample [s]
   double event_interval = 10.0;   ///< before the same finding is reported again [s]
   std::optional<Eigen::Quaterniond> R_bc;  ///< camera to body, where it is known
