@@ -129,15 +129,16 @@ void FeatureTrackerRos::work() {
   while (const auto input = queue_->take()) process(*input);
 }
 
-cv::Mat FeatureTrackerRos::greyOf(const QueuedImage& image) {
-  return image.raw ? conversion_.toGrey(*image.raw) : conversion_.toGrey(*image.compressed);
+cv::Mat FeatureTrackerRos::greyOf(const QueuedImage& image,
+                                  vins_msgs::ImageConverter* converter) const {
+  return image.raw ? converter->toGrey(*image.raw) : converter->toGrey(*image.compressed);
 }
 
 void FeatureTrackerRos::process(const TrackerInput& input) {
   std::vector<cv::Mat> images;
   try {
-    images.push_back(greyOf(input.first));
-    if (input.second) images.push_back(greyOf(*input.second));
+    images.push_back(greyOf(input.first, &converters_[0]));
+    if (input.second) images.push_back(greyOf(*input.second, &converters_[1]));
   } catch (const InputError& error) {
     refuse(error.what());
     if (images.empty()) return;

@@ -13,8 +13,8 @@
 
 #include "camera_model/rig.h"
 #include "feature_tracker/feature_tracker.h"
-#include "image_conversion.h"
 #include "input_queue.h"
+#include "vins_msgs/image_converter.h"
 
 namespace vins::feature_tracker {
 
@@ -56,7 +56,7 @@ class FeatureTrackerRos {
   void subscribeCamera(int camera, const std::string& topic);
   void work();
   void process(const TrackerInput& input);
-  cv::Mat greyOf(const QueuedImage& image);
+  cv::Mat greyOf(const QueuedImage& image, vins_msgs::ImageConverter* converter) const;
   void publish(const FeatureTrackerResult& result, const std::vector<cv::Mat>& images,
                const std::string& frame_id);
   void publishPicture(const FeatureFrame& frame, const std::vector<cv::Mat>& images,
@@ -73,7 +73,7 @@ class FeatureTrackerRos {
   bool uses_imu_ = false;
   FeatureTrackerOptions options_;
   std::unique_ptr<FeatureTracker> tracker_;
-  ImageConversion conversion_;
+  vins_msgs::ImageConverter converters_[2];  // of the first and of the second camera
   std::unique_ptr<InputQueue> queue_;
 
   image_transport::ImageTransport transport_, private_transport_;

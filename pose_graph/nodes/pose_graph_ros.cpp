@@ -2,9 +2,7 @@
 
 #include <utility>
 
-#include <cv_bridge/cv_bridge.h>
 #include <ros/package.h>
-#include <sensor_msgs/image_encodings.h>
 
 #include "vins_core/input_error.h"
 #include "vins_msgs/conversions.h"
@@ -33,10 +31,11 @@ void log(const Event& event) {
 }
 
 /// The image in grey values; empty, and said so, where it cannot be had.
-cv::Mat toGrey(const sensor_msgs::Image::ConstPtr& message) {
+template <typename Message>
+cv::Mat toGrey(const Message& message, vins_msgs::ImageConverter* converter) {
   try {
-    return cv_bridge::toCvCopy(message, sensor_msgs::image_encodings::MONO8)->image;
-  } catch (const cv_bridge::Exception& error) {
+    return converter->toGrey(message);
+  } catch (const InputError& error) {
     ROS_ERROR_STREAM_THROTTLE(1.0, "dropped an image: " << error.what());
     return {};
   }
@@ -70,6 +69,10 @@ PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
   }
   camera_model::requireImageTopic(configuration.parameters, configuration.rig);
   image_topic_ = configuration.rig.cameras.front().image_topic;
+  if (private_node.param("image_transport", std::string("raw")) == "compressed") {
+    is_compressed_ = true;
+    image_topic_ += "/compressed";
+  }
   graph_ = makeGraph(configuration.rig, configuration_);
   private_node.param("save_map", save_at_end_, save_at_end_);
   loadFirstMap(private_node);
@@ -125,7 +128,7 @@ std::string PoseGraphRos::loadMap(const std::string& file) {
 }
 
 void PoseGraphRos::subscribe(ros::NodeHandle node) {
-  subscribers_.push_back(node.subscribe(image_topic_, 10, &PoseGraphRos::onImage, this));
+  subscribeImages(&node);
   const auto take = [&](auto message, const std::string& topic) {
     using Message = decltype(message);
     const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
@@ -147,8 +150,19 @@ void PoseGraphRos::subscribe(ros::NodeHandle node) {
       node.subscribe<nav_msgs::Odometry>("vins_estimator/odometry", 200, take_odometry));
 }
 
-void PoseGraphRos::onImage(const sensor_msgs::Image::ConstPtr& message) {
-  const cv::Mat image = toGrey(message);
+void PoseGraphRos::subscribeImages(ros::NodeHandle* node) {
+  if (is_compressed_) {
+    subscribers_.push_back(node->subscribe(
+        image_topic_, 10, &PoseGraphRos::onImage<sensor_msgs::CompressedImage>, this));
+    return;
+  }
+  subscribers_.push_back(
+      node->subscribe(image_topic_, 10, &PoseGraphRos::onImage<sensor_msgs::Image>, this));
+}
+
+template <typename Message>
+void PoseGraphRos::onImage(const boost::shared_ptr<const Message>& message) {
+  const cv::Mat image = toGrey(*message, &converter_);
   if (image.empty()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   images_.add(vins_msgs::toStamp(message->header.stamp), image);
@@ -271,7 +285,7 @@ void PoseGraphRos::summarize(diagnostic_updater::DiagnosticStatusWrapper* status
   if (without_image_ > 0 && without_image_ * 2 > statistics_.keyframes) {
     status->mergeSummary(DiagnosticStatus::WARN,
                          "most keyframes come without an image: no loops will be found; does " +
-                             image_topic_ + " reach this node, uncompressed?");
+                             image_topic_ + " reach this node? (rostopic hz)");
   }
   if (dropped_ > dropped_told_) {
     status->mergeSummary(DiagnosticStatus::WARN,

@@ -13,6 +13,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
+#include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 
 #include "keyframe_numbering.h"
@@ -25,6 +26,7 @@
 #include "vins_msgs/Keyframe.h"
 #include "vins_msgs/KeyframePoseUpdate.h"
 #include "vins_msgs/LoopEdge.h"
+#include "vins_msgs/image_converter.h"
 #include "vins_msgs/node_configuration.h"
 
 namespace vins::pose_graph {
@@ -35,8 +37,9 @@ namespace vins::pose_graph {
 /// Private parameters: `config_file` (the rig's YAML; needed), those of PoseGraphPublisher;
 /// `load_map` (a map file to begin with; otherwise the one of pose_graph_save_path, where the YAML
 /// has load_previous_pose_graph) and `save_map` (where finish() writes the map); `image_transport`
-/// is raw. Subscribes the file's image_topic and the estimator's `keyframe`,
-/// `keyframe_pose_update`, `loop_edge` and `odometry`. Serves `~save_map` and `~load_map`.
+/// (raw, or compressed: the images of `image_topic`/compressed). Subscribes the file's image_topic
+/// and the estimator's `keyframe`, `keyframe_pose_update`, `loop_edge` and `odometry`. Serves
+/// `~save_map` and `~load_map`.
 class PoseGraphRos {
  public:
   /// Throws InputError for a configuration or a map that is missing or malformed.
@@ -57,7 +60,9 @@ class PoseGraphRos {
   PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
                const vins_msgs::NodeConfiguration& configuration);
   void subscribe(ros::NodeHandle node);
-  void onImage(const sensor_msgs::Image::ConstPtr& message);
+  void subscribeImages(ros::NodeHandle* node);
+  template <typename Message>
+  void onImage(const boost::shared_ptr<const Message>& message);
   void push(Input input);
   void work();
   void handle(Keyframe keyframe);
@@ -77,7 +82,9 @@ class PoseGraphRos {
 
   PoseGraphConfiguration configuration_;
   std::string image_topic_;
-  std::unique_ptr<PoseGraph> graph_;  // the worker's alone
+  bool is_compressed_ = false;           // the images of image_topic_
+  vins_msgs::ImageConverter converter_;  // the image callback's alone
+  std::unique_ptr<PoseGraph> graph_;     // the worker's alone
   PoseGraphPublisher publisher_;
   PictureStore pictures_;
   KeyframeNumbering numbering_;  // the worker's alone

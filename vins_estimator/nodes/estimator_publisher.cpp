@@ -53,8 +53,11 @@ void EstimatorPublisher::clear() {
   history_ = {};
 }
 
+void EstimatorPublisher::publish(const std::vector<Event>& events) {
+  for (const Event& event : events) events_.publish(vins_msgs::toMsg(event));
+}
+
 void EstimatorPublisher::publish(const EstimatorResult& result) {
-  for (const Event& event : result.events) events_.publish(vins_msgs::toMsg(event));
   if (!result.odometry) return;
   publishKeyframes(result);  // first: the pose graph learns from them what sequence this is
   publishOdometry(*result.odometry);

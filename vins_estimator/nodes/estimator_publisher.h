@@ -21,6 +21,9 @@ class EstimatorPublisher {
   /// All that one frame has brought.
   void publish(const EstimatorResult& result);
 
+  /// Events, those of a frame or of the inputs alone.
+  void publish(const std::vector<Event>& events);
+
   /// The state at an IMU sample.
   void publish(const PropagatedState& state);
 

@@ -172,10 +172,19 @@ void EstimatorRos::handle(Input* input) {
 
 void EstimatorRos::handleResults() {
   while (const std::optional<EstimatorResult> result = estimator_.process()) handle(*result);
+  handle(estimator_.takeInputEvents());
+}
+
+void EstimatorRos::handle(const std::vector<Event>& events) {
+  for (const Event& event : events) log(event);
+  publisher_.publish(events);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const Event& event : events) recent_.push_back(event);
+  while (recent_.size() > kRecentEvents) recent_.pop_front();
 }
 
 void EstimatorRos::handle(const EstimatorResult& result) {
-  for (const Event& event : result.events) log(event);
+  handle(result.events);
   if (result.odometry) {
     const Stamp solved = result.odometry->stamp + toNanoseconds(result.rig.td);
     const std::lock_guard<std::mutex> lock(propagator_mutex_);
@@ -184,8 +193,6 @@ void EstimatorRos::handle(const EstimatorResult& result) {
   publisher_.publish(result);
   const std::lock_guard<std::mutex> lock(mutex_);
   latest_ = result;
-  for (const Event& event : result.events) recent_.push_back(event);
-  while (recent_.size() > kRecentEvents) recent_.pop_front();
 }
 
 void EstimatorRos::restart() {

@@ -59,6 +59,7 @@ class EstimatorRos {
   void work();
   void handle(Input* input);
   void handleResults();
+  void handle(const std::vector<Event>& events);
   void handle(const EstimatorResult& result);
   void restart();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);

@@ -8,6 +8,7 @@
 
 #include "vins_estimator/health/continuation.h"
 #include "vins_estimator/health/failure_detector.h"
+#include "vins_estimator/health/imu_plausibility.h"
 #include "vins_estimator/health/stillness.h"
 #include "vins_estimator/health/track_watch.h"
 #include "vins_estimator/inertial/measurement_queue.h"
@@ -28,6 +29,13 @@ InitializerOptions initializerOptions(const EstimatorOptions& options) {
   result.pixel_noise = options.pixel_noise;
   result.stillness.gravity = options.imu.gravity;
   result.max_frames = options.window_size + 1;
+  return result;
+}
+
+ImuPlausibilityOptions plausibilityOptions(const EstimatorOptions& options) {
+  ImuPlausibilityOptions result;
+  result.gravity = options.imu.gravity;
+  if (options.extrinsic != ExtrinsicMode::kUnknown) result.R_bc = options.T_bc.rotation;
   return result;
 }
 
@@ -80,14 +88,23 @@ class Estimator::Implementation {
         calibrator_(calibratorOptions(options), {options.T_bc.rotation, options.td}),
         initializer_(initializerOptions(options)),
         stillness_(initializerOptions(options).stillness),
+        plausibility_(plausibilityOptions(options)),
         track_watch_(options.min_tracks),
         continuation_(options.imu),
         tracker_(options) {
     reset();
   }
 
-  void addImu(const ImuSample& sample) { queue_.addImu(sample); }
-  void addFrame(const FeatureFrame& frame) { queue_.addFrame(frame); }
+  void addImu(const ImuSample& sample) {
+    plausibility_.addImu(sample);
+    queue_.addImu(sample);
+  }
+  void addFrame(const FeatureFrame& frame) {
+    plausibility_.addImage(frame.stamp);
+    queue_.addFrame(frame);
+  }
+  void addImageStamp(Stamp stamp) { plausibility_.addImage(stamp); }
+  std::vector<Event> takeInputEvents() { return plausibility_.takeEvents(); }
   void setBacklog(int frames) { backlog_ = frames; }
   void addLoopMatch(const LoopMatch& match) {
     if (status_ == EstimatorStatus::kTracking) waiting_loops_.push_back(match);
@@ -386,6 +403,7 @@ class Estimator::Implementation {
   TimeOffsetSearch time_offset_search_;
   Initializer initializer_;
   StillnessDetector stillness_;
+  ImuPlausibility plausibility_;
   TrackWatch track_watch_;
   Continuation continuation_;
   WindowTracker tracker_;
@@ -411,9 +429,11 @@ Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::addImu(const ImuSample& sample) { implementation_->addImu(sample); }
 void Estimator::addFrame(const FeatureFrame& frame) { implementation_->addFrame(frame); }
+void Estimator::addImageStamp(Stamp stamp) { implementation_->addImageStamp(stamp); }
 void Estimator::addLoopMatch(const LoopMatch& match) { implementation_->addLoopMatch(match); }
 std::optional<EstimatorResult> Estimator::process() { return implementation_->process(); }
 void Estimator::setBacklog(int frames) { implementation_->setBacklog(frames); }
+std::vector<Event> Estimator::takeInputEvents() { return implementation_->takeInputEvents(); }
 void Estimator::reset() { implementation_->reset(); }
 
 }  // namespace vins::estimator

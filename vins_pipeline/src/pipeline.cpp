@@ -9,7 +9,8 @@
 namespace vins::pipeline {
 namespace {
 
-constexpr Stamp kJump = 1'000'000'000;  ///< stamps that fall by more begin a new run [ns]
+constexpr std::size_t kMaxWaiting = 200;  ///< images: ten seconds at 20 Hz
+constexpr Stamp kJump = 1'000'000'000;    ///< stamps that fall by more begin a new run [ns]
 /// Images kept for keyframes to come: more than the time in which one is chosen [s].
 constexpr double kRecentImages = pose_graph::kLongestChoice + 0.2;
 
@@ -102,6 +103,9 @@ void Pipeline::addImu(const ImuSample& sample) {
 void Pipeline::addImage(Stamp stamp, const cv::Mat& image) {
   while (!images_.empty() && images_.back().stamp > stamp + kJump) images_.pop_back();
   images_.push_back({stamp, image});
+  estimator_.addImageStamp(stamp);
+  // More wait only where their samples never come.
+  if (images_.size() > kMaxWaiting) images_.pop_front();
 }
 
 bool Pipeline::isReady(const WaitingImage& image) const {

@@ -55,6 +55,19 @@ void RunRecord::addDuration(const std::string& stage, const Duration& duration) 
   durations.push_back(duration);
 }
 
+void RunRecord::addFrame(const std::vector<std::pair<std::string, Duration>>& durations) {
+  Duration frame;
+  int stages = 0;
+  for (const auto& [stage, duration] : durations) {
+    addDuration(stage, duration);
+    if (stage != "tracker" && stage != "estimator") continue;
+    frame.wall += duration.wall;
+    frame.cpu += duration.cpu;
+    ++stages;
+  }
+  if (stages > 1) addDuration("tracker+estimator", frame);
+}
+
 void RunRecord::addEvents(const std::vector<Event>& events) {
   events_.insert(events_.end(), events.begin(), events.end());
 }

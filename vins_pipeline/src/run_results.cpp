@@ -1,6 +1,10 @@
 #include "vins_pipeline/run_results.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "vins_core/trajectory_file.h"
 
@@ -33,15 +37,34 @@ void RunResults::add(const PipelineResult& result) {
   ++images_;
   features_ = result.frame ? result.frame->observations.size() : 0;
   for (const estimator::EstimatorResult& estimate : result.estimates) add(estimate);
-  for (const Event& event : result.events) {
-    if (event.severity != Severity::kInfo) ++warnings_[event.code];
-  }
+  for (const Event& event : result.events) add(event);
+}
+
+void RunResults::add(const Event& event) {
+  if (event.severity != Severity::kInfo) ++warnings_[event.code];
 }
 
 void RunResults::add(const estimator::EstimatorResult& estimate) {
   ++frames_;
   status_ = estimate.status;
-  if (estimate.odometry) add(*estimate.odometry);
+  if (!estimate.odometry) return;
+  td_[estimate.odometry->stamp] = estimate.rig.td;
+  add(*estimate.odometry);
+}
+
+std::optional<Trajectory> RunResults::atImuTime(const Trajectory& poses) const {
+  constexpr Stamp kRounding = 1'000;  // of stamps in text files [ns]
+  const auto is_zero = [](const auto& frame) { return frame.second == 0.0; };
+  if (std::all_of(td_.begin(), td_.end(), is_zero)) return std::nullopt;
+  std::vector<StampedPose> shifted;
+  for (StampedPose pose : poses.poses()) {
+    const auto after = td_.upper_bound(pose.stamp + kRounding);
+    const double td = after == td_.begin() ? after->second : std::prev(after)->second;
+    pose.stamp += toNanoseconds(td);
+    // A td that falls by more than a frame's interval would turn the order.
+    if (shifted.empty() || pose.stamp > shifted.back().stamp) shifted.push_back(pose);
+  }
+  return Trajectory(shifted);
 }
 
 void RunResults::add(const estimator::Odometry& odometry) {

@@ -66,8 +66,9 @@ Contents readAll(Recording* recording) {
   Contents contents;
   Stamp before = 0;
   while (const auto record = recording->next()) {
-    EXPECT_GE(record->arrival, before);
-    before = record->arrival;
+    const Stamp stamp = std::visit([](const auto& data) { return data.stamp; }, record->data);
+    EXPECT_GE(stamp, before);
+    before = stamp;
     if (const auto* sample = std::get_if<ImuSample>(&record->data)) contents.imu.push_back(*sample);
     if (const auto* image = std::get_if<RecordedImage>(&record->data)) {
       contents.images.push_back(*image);
@@ -93,7 +94,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST_F(RecordingTest, ABagIsReadInTheOrderOfArrival) {
+TEST_F(RecordingTest, ABagIsReadInTheOrderOfItsStamps) {
   writeBag(path("a.bag"));
   const auto recording = openRecording(path("a.bag"), {});
   const RecordingSummary& summary = recording->summary();
@@ -209,6 +210,45 @@ TEST_F(RecordingTest, CompressedImagesAndLaserTrackersAreRead) {
   ASSERT_EQ(contents.truth.size(), 1u);
   EXPECT_FALSE(contents.truth[0].has_rotation);
   EXPECT_EQ(contents.truth[0].T_wb.position.y(), 2.0);
+}
+
+/// A second of IMU samples, and images that arrive only when all samples have come.
+TEST_F(RecordingTest, LateImagesAreReadAtTheirStamps) {
+  {
+    BagWriter bag(path("late.bag"));
+    for (int i = 0; i < 200; ++i) {
+      const Stamp now = kStart + i * 5 * kMs;
+      bag.writeImu(now, {now, {0.0, 0.0, 9.81}, {0.0, 0.0, 0.0}});
+    }
+    for (const int ms : {100, 300, 200}) {
+      bag.writeImage(topic::kCamera0, kStart + 1000 * kMs, kStart + ms * kMs, greyImage());
+    }
+    bag.finish();
+  }
+  const Contents contents = readAll(openRecording(path("late.bag"), {}).get());
+  EXPECT_EQ(contents.imu.size(), 200u);
+  ASSERT_EQ(contents.images.size(), 3u);
+  EXPECT_EQ(contents.images[1].stamp, kStart + 200 * kMs);
+}
+
+TEST_F(RecordingTest, TheCompressedTopicIsFoundByTheBaseName) {
+  {
+    rosbag::Bag bag(path("compressed.bag"), rosbag::bagmode::Write);
+    const ros::Time now = vins_msgs::toRosTime(kStart);
+    sensor_msgs::CompressedImage image;
+    image.header.stamp = now;
+    cv::imencode(".png", greyImage(), image.data);
+    bag.write("/cam0/image_raw/compressed", now, image);
+    sensor_msgs::Imu imu;
+    imu.header.stamp = now;
+    bag.write("/imu0", now, imu);
+    bag.close();
+  }
+  const auto recording = openRecording(path("compressed.bag"), {});
+  EXPECT_EQ(recording->summary().images, 1u);
+  const Contents contents = readAll(recording.get());
+  ASSERT_EQ(contents.images.size(), 1u);
+  EXPECT_EQ(cv::norm(contents.images[0].load(), greyImage(), cv::NORM_INF), 0.0);
 }
 
 TEST_F(RecordingTest, ErrorsTellWhatIsThere) {

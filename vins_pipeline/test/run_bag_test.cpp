@@ -146,6 +146,45 @@ TEST_F(RunBag, ErrorsTellWhatIsWrongBeforeAnythingIsWritten) {
       << outcome.output;
 }
 
+TEST_F(RunBag, ABadImageCostsThatImageOnly) {
+  const fs::path bag = path("bad.bag");
+  {
+    BagWriter writer(bag.string());
+    for (int i = 0; i <= 50; ++i) {
+      const Stamp now = 1'600'000'000'000'000'000 + i * Stamp{5'000'000};
+      writer.writeImu(now, {now, {9.81, 0.0, 0.0}, {0.0, 0.0, 0.0}});
+      const int rows = i == 20 ? 478 : 480;
+      if (i % 10 == 0)
+        writer.writeImage(topic::kCamera0, now, now, cv::Mat::ones(rows, 752, CV_8U));
+    }
+    writer.finish();
+  }
+  const Outcome outcome =
+      run(std::string(kConfig) + " " + bag.string() + " --out " + path("out").string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "refused       1 of 6 images")) << outcome.output;
+  EXPECT_TRUE(contains(textOf(path("out/events.csv")), "image_refused"));
+  EXPECT_TRUE(contains(textOf(path("out/events.csv")), "752x478"));
+}
+
+TEST_F(RunBag, AnImuThatEndsIsToldByTheExitCode) {
+  const fs::path bag = path("ends.bag");
+  {
+    BagWriter writer(bag.string());
+    for (int i = 0; i <= 300; ++i) {
+      const Stamp now = 1'600'000'000'000'000'000 + i * Stamp{5'000'000};
+      if (i <= 150) writer.writeImu(now, {now, {9.81, 0.0, 0.0}, {0.0, 0.0, 0.0}});
+      if (i % 10 == 0) writer.writeImage(topic::kCamera0, now, now, cv::Mat::ones(480, 752, CV_8U));
+    }
+    writer.finish();
+  }
+  const Outcome outcome =
+      run(std::string(kConfig) + " " + bag.string() + " --out " + path("out").string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "IMU           ended at second 0.75")) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, " of 31 images, path")) << outcome.output;
+}
+
 TEST_F(RunBag, AFolderThatCannotBeMadeIsAnError) {
   const std::string bag = writeBag("a.bag");
   const Outcome outcome = run(std::string(kConfig) + " " + bag + " --out " + bag);

@@ -87,6 +87,19 @@ TEST(RunResults, TruthIsWrittenInRisingOrderWithWhatIsKnown) {
             "1600000000.000000005 1.000000000 2.000000000 3.000000000\n");
 }
 
+TEST(RunResults, ComparesAtTheImusTime) {
+  RunResults results;
+  PipelineResult result = resultAt(0, true);
+  results.add(result);
+  const std::vector<StampedPose> poses = {{result.estimates[0].odometry->stamp, Pose()}};
+  EXPECT_FALSE(results.atImuTime(Trajectory(poses))) << "one clock already";
+  result.estimates[0].rig.td = 0.2;
+  results.add(result);
+  const std::optional<Trajectory> shifted = results.atImuTime(Trajectory(poses));
+  ASSERT_TRUE(shifted);
+  EXPECT_EQ(shifted->poses().at(0).stamp, poses[0].stamp + 200'000'000);
+}
+
 TEST(RunResults, CountsWarningsByCode) {
   RunResults results;
   PipelineResult result = resultAt(0, true);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -9,20 +10,20 @@
 #include <utility>
 #include <vector>
 
-#include <cv_bridge/cv_bridge.h>
 #include <geometry_msgs/PointStamped.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TransformStamped.h>
-#include <opencv2/imgcodecs.hpp>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
-#include <sensor_msgs/image_encodings.h>
+#include <std_msgs/Header.h>
 
 #include "vins_core/input_error.h"
 #include "vins_msgs/conversions.h"
+#include "vins_msgs/image_converter.h"
+#include "vins_pipeline/stamp_order.h"
 
 namespace vins::pipeline {
 namespace {
@@ -82,27 +83,15 @@ std::string placeOf(const std::string& bag, const std::string& topic, Stamp stam
   return bag + ": " + topic + ": image at " + std::to_string(stamp) + " ns";
 }
 
-cv::Mat toGrey(const sensor_msgs::Image::ConstPtr& message, const std::string& place) {
-  namespace encodings = sensor_msgs::image_encodings;
-  try {
-    // Drivers say 8UC1 where they mean grey values, which cv_bridge does not guess.
-    const bool is_plain = message->encoding == "8UC1" || message->encoding == "16UC1";
-    if (!is_plain) return cv_bridge::toCvShare(message, encodings::MONO8)->image.clone();
-    sensor_msgs::Image grey = *message;
-    grey.encoding = message->encoding == "8UC1" ? encodings::MONO8 : encodings::MONO16;
-    return cv_bridge::toCvCopy(grey, encodings::MONO8)->image;
-  } catch (const std::exception& error) {
-    throw InputError(place + " of " + std::to_string(message->width) + "x" +
-                     std::to_string(message->height) + " '" + message->encoding +
-                     "' cannot be converted to grey values: " + error.what());
-  }
-}
-
-cv::Mat decode(const sensor_msgs::CompressedImage::ConstPtr& message, const std::string& place) {
-  cv::Mat image;
-  if (!message->data.empty()) image = cv::imdecode(message->data, cv::IMREAD_GRAYSCALE);
-  if (image.empty()) throw InputError(place + " '" + message->format + "' cannot be decoded");
-  return image;
+/// The stamp of a message's header, which comes first in every type that is read here.
+Stamp headerStampOf(const rosbag::MessageInstance& instance, std::vector<std::uint8_t>* buffer) {
+  buffer->resize(instance.size());
+  ros::serialization::OStream out(buffer->data(), instance.size());
+  instance.write(out);
+  ros::serialization::IStream in(buffer->data(), instance.size());
+  std_msgs::Header header;
+  ros::serialization::deserialize(in, header);
+  return vins_msgs::toStamp(header.stamp);
 }
 
 class BagRecording : public Recording {
@@ -114,28 +103,30 @@ class BagRecording : public Recording {
     types_ = typesOf(bag_);
     requireTopic(path, types_, selection.imu_topic, {kImu});
     std::vector<std::string> topics = {selection.imu_topic};
-    for (const std::string& topic : selection.image_topics) {
+    for (std::string& topic : selection_.image_topics) {
+      if (types_.count(topic) == 0 && types_.count(topic + "/compressed") > 0) {
+        topic += "/compressed";
+      }
       requireTopic(path, types_, topic, {kImage, kCompressed});
       topics.push_back(topic);
     }
     chooseSpan(topics);
     truth_topic_ = truthTopicOf(types_);
     if (!truth_topic_.empty()) topics.push_back(truth_topic_);
+    converters_.resize(selection_.image_topics.size());
     view_.addQuery(bag_, rosbag::TopicQuery(topics), vins_msgs::toRosTime(summary_.begin),
                    vins_msgs::toRosTime(summary_.end));
     summarize();
-    place_ = view_.begin();
+    index();
   }
 
   std::optional<Record> next() override {
-    if (failure_) throw InputError(*failure_);
-    if (place_ == view_.end()) return std::nullopt;
+    if (next_ == order_.place().size()) return std::nullopt;
+    const std::size_t place = order_.place()[next_++];
+    const rosbag::MessageInstance& instance = messages_[place];
     try {
-      const rosbag::MessageInstance& instance = *place_;
-      Record record{vins_msgs::toStamp(instance.getTime()), dataOf(instance)};
-      advance();
-      return record;
-    } catch (const rosbag::BagException& error) {
+      return Record{vins_msgs::toStamp(instance.getTime()), dataOf(instance)};
+    } catch (const ros::Exception& error) {
       throw InputError(summary_.name + ": is broken: " + error.what());
     }
   }
@@ -143,13 +134,29 @@ class BagRecording : public Recording {
  private:
   using Data = std::variant<ImuSample, RecordedImage, RecordedTruth>;
 
-  /// The message has been read: what breaks behind it is told when it is asked for.
-  void advance() {
+  /// Reads all header stamps once, as far as the bag can be read.
+  void index() {
+    std::vector<std::uint8_t> buffer;
+    Stamp reached = summary_.begin;
     try {
-      ++place_;
-    } catch (const rosbag::BagException& error) {
-      failure_ = summary_.name + ": is broken: " + error.what();
+      for (const rosbag::MessageInstance& instance : view_) {
+        const Stamp stamp = headerStampOf(instance, &buffer);
+        reached = vins_msgs::toStamp(instance.getTime());
+        messages_.push_back(instance);
+        order_.add(streamOf(instance.getTopic()), stamp);
+      }
+    } catch (const ros::Exception& error) {
+      std::ostringstream text;
+      text << summary_.name << ": is damaged behind second " << toSeconds(reached - summary_.begin)
+           << ", up to which it is used: " << error.what();
+      summary_.damage = text.str();
     }
+    order_.sort();
+  }
+
+  StampOrder::Stream streamOf(const std::string& topic) const {
+    if (topic == selection_.imu_topic) return StampOrder::Stream::kImu;
+    return topic == truth_topic_ ? StampOrder::Stream::kTruth : StampOrder::Stream::kImage;
   }
 
   void chooseSpan(const std::vector<std::string>& topics) {
@@ -189,32 +196,37 @@ class BagRecording : public Recording {
                      ": a message is of another definition than " + instance.getDataType());
   }
 
-  Data dataOf(const rosbag::MessageInstance& instance) const {
+  Data dataOf(const rosbag::MessageInstance& instance) {
     const std::string& topic = instance.getTopic();
     if (topic == selection_.imu_topic) return vins_msgs::fromMsg(*read<sensor_msgs::Imu>(instance));
     if (topic == truth_topic_) return truthOf(instance);
     return imageOf(instance);
   }
 
-  RecordedImage imageOf(const rosbag::MessageInstance& instance) const {
+  template <typename Message>
+  RecordedImage loadable(const rosbag::MessageInstance& instance, std::size_t camera) {
+    const auto message = read<Message>(instance);
+    RecordedImage image;
+    image.camera = static_cast<int>(camera);
+    image.stamp = vins_msgs::toStamp(message->header.stamp);
+    image.load = [message, converter = &converters_[camera],
+                  place = placeOf(summary_.name, instance.getTopic(), image.stamp)] {
+      try {
+        return converter->toGrey(*message);
+      } catch (const InputError& error) {
+        throw InputError(place + ": " + error.what());
+      }
+    };
+    return image;
+  }
+
+  RecordedImage imageOf(const rosbag::MessageInstance& instance) {
     const auto& topics = selection_.image_topics;
     const auto place = std::find(topics.begin(), topics.end(), instance.getTopic());
-    RecordedImage image;
-    image.camera = static_cast<int>(place - topics.begin());
-    if (instance.getDataType() == kImage) {
-      const auto message = read<sensor_msgs::Image>(instance);
-      image.stamp = vins_msgs::toStamp(message->header.stamp);
-      image.load = [message, place = placeOf(summary_.name, *place, image.stamp)] {
-        return toGrey(message, place);
-      };
-    } else {
-      const auto message = read<sensor_msgs::CompressedImage>(instance);
-      image.stamp = vins_msgs::toStamp(message->header.stamp);
-      image.load = [message, place = placeOf(summary_.name, *place, image.stamp)] {
-        return decode(message, place);
-      };
-    }
-    return image;
+    const auto camera = static_cast<std::size_t>(place - topics.begin());
+    return instance.getDataType() == kImage
+               ? loadable<sensor_msgs::Image>(instance, camera)
+               : loadable<sensor_msgs::CompressedImage>(instance, camera);
   }
 
   RecordedTruth truthOf(const rosbag::MessageInstance& instance) const {
@@ -242,8 +254,10 @@ class BagRecording : public Recording {
   Types types_;
   std::string truth_topic_;
   rosbag::View view_;
-  rosbag::View::iterator place_;
-  std::optional<std::string> failure_;
+  std::vector<vins_msgs::ImageConverter> converters_;  ///< one per image topic
+  std::deque<rosbag::MessageInstance> messages_;       ///< places in the bag, by arrival
+  StampOrder order_;                                   ///< of `messages_`
+  std::size_t next_ = 0;
 };
 
 }  // namespace

@@ -27,6 +27,7 @@
 #include "vins_core/trajectory_file.h"
 #include "vins_pipeline/bag_recording.h"
 #include "vins_pipeline/frame_record.h"
+#include "vins_pipeline/input_account.h"
 #include "vins_pipeline/loop_results.h"
 #include "vins_pipeline/pipeline.h"
 #include "vins_pipeline/run_record.h"
@@ -44,13 +45,14 @@ struct Run {
   vins::pipeline::RunRecord record;
   vins::pipeline::RunResults results;
   vins::pipeline::FrameRecord frames;
+  vins::pipeline::InputAccount inputs;
   vins::pipeline::TrackPicture picture;
   vins::pipeline::LoopResults loop_results;
   std::vector<vins::pose_graph::SequencePath> paths;  ///< at the end
   std::optional<vins::pose_graph::PoseGraphStatistics>
       graph;  ///< at the end; nothing without loop closing
   vins::pipeline::RunMaps maps;
-  vins::Stamp reached = 0;  ///< by arrival [ns]
+  vins::Stamp reached = 0;  ///< the latest arrival of all messages used [ns]
   bool interrupted = false;
 };
 
@@ -96,44 +98,50 @@ void requireImageSize(const cv::Mat& image, const Run& run) {
                          "x" + std::to_string(size.height));
 }
 
-void feed(const vins::pipeline::Record& message, vins::pipeline::Pipeline* pipeline, Run* run) {
-  if (const auto* sample = std::get_if<vins::ImuSample>(&message.data)) {
-    pipeline->addImu(*sample);
-  } else if (const auto* truth = std::get_if<vins::pipeline::RecordedTruth>(&message.data)) {
-    run->results.add(*truth);
-  } else {
-    const auto& image = std::get<vins::pipeline::RecordedImage>(message.data);
+/// An image that cannot be used costs that image only.
+void feedImage(const vins::pipeline::RecordedImage& image, vins::pipeline::Pipeline* pipeline,
+               Run* run) {
+  try {
     const vins::pipeline::StopWatch watch;
     const cv::Mat pixels = image.load();
     run->record.addDuration("read", watch.elapsed());
     requireImageSize(pixels, *run);
+    run->inputs.addImage(image.stamp);
     pipeline->addImage(image.stamp, pixels);
+  } catch (const vins::InputError& error) {
+    const vins::Event event = run->inputs.refuse(image.stamp, error.what());
+    run->record.addEvents({event});
+    run->results.add(event);
   }
 }
 
-/// Wall clock and CPU time of the odometry's stages together, where both have worked.
-void addFrameDuration(const vins::pipeline::PipelineResult& result,
-                      vins::pipeline::RunRecord* record) {
-  vins::pipeline::Duration frame;
-  int stages = 0;
-  for (const auto& [stage, duration] : result.durations) {
-    record->addDuration(stage, duration);
-    if (stage != "tracker" && stage != "estimator") continue;
-    frame.wall += duration.wall;
-    frame.cpu += duration.cpu;
-    ++stages;
+void feed(const vins::pipeline::Record& message, vins::pipeline::Pipeline* pipeline, Run* run) {
+  if (const auto* sample = std::get_if<vins::ImuSample>(&message.data)) {
+    run->inputs.addImu(sample->stamp);
+    pipeline->addImu(*sample);
+  } else if (const auto* truth = std::get_if<vins::pipeline::RecordedTruth>(&message.data)) {
+    run->results.add(*truth);
+  } else {
+    feedImage(std::get<vins::pipeline::RecordedImage>(message.data), pipeline, run);
   }
-  if (stages > 1) record->addDuration("tracker+estimator", frame);
 }
 
 void work(vins::pipeline::Pipeline* pipeline, Run* run) {
   while (const auto result = pipeline->process()) {
-    addFrameDuration(*result, &run->record);
+    run->record.addFrame(result->durations);
     run->record.addEvents(result->events);
+    run->inputs.addEvents(result->events);
     run->results.add(*result);
     run->frames.add(*result);
     run->picture.add(*result, *run->options.cameras.front());
     run->loop_results.add(*result);
+  }
+  const std::vector<vins::Event> findings = pipeline->takeInputEvents();
+  run->record.addEvents(findings);
+  run->inputs.addEvents(findings);
+  for (const vins::Event& event : findings) {
+    run->results.add(event);
+    std::cerr << event << "\n";
   }
 }
 
@@ -169,7 +177,7 @@ void process(vins::Interrupt* interrupt, Run* run) {
   while (const auto message = run->recording->next()) {
     run->interrupted = interrupt->isRequested();
     if (run->interrupted) break;
-    run->reached = message->arrival;
+    run->reached = std::max(run->reached, message->arrival);
     feed(*message, &pipeline, run);
     work(&pipeline, run);
     bar.update(shareOf(run->reached), noteOf(*run));
@@ -177,6 +185,7 @@ void process(vins::Interrupt* interrupt, Run* run) {
   if (!run->interrupted) {
     pipeline.finish();
     work(&pipeline, run);
+    run->inputs.requireImages();
   }
   closeGraph(&pipeline, run);
   bar.finish(noteOf(*run));
@@ -254,13 +263,14 @@ void printSummary(const Run& run, const fs::path& folder) {
   std::cout << std::fixed << std::setprecision(2) << "recording     " << summary.name << ": "
             << summary.duration() << " s, " << summary.images << " images, " << summary.imu_samples
             << " IMU samples\n";
+  std::cout << run.inputs.problems(summary);
   if (results.initialisedAfter()) {
     std::cout << "initialised   " << *results.initialisedAfter() << " s after the first image\n";
   } else {
-    std::cout << "initialised   never\n";
+    std::cout << "initialised   never\n" << run.inputs.waitingReasons();
   }
-  std::cout << "odometry      " << results.odometries() << " of " << results.frames()
-            << " frames, path " << results.pathLength() << " m, " << results.resets() << " resets, "
+  std::cout << "odometry      " << results.odometries() << " of " << summary.images
+            << " images, path " << results.pathLength() << " m, " << results.resets() << " resets, "
             << (results.isTracking() ? "tracking" : "not tracking")
             << (run.interrupted ? " when interrupted\n" : " at the end\n");
   if (run.graph) printLoops(*run.graph);
@@ -279,10 +289,11 @@ void report(const po::variables_map& values, const fs::path& folder, const Run& 
   const std::string truth = prepareTruth(values["ground-truth"].as<std::string>(), folder, run);
   if (truth.empty() || run.results.odometries() == 0) return;
   std::cout << "\n";
-  std::vector<std::string> estimates = {(folder / "vio_live.txt").string()};
+  std::vector<std::string> estimates = {
+      vins::pipeline::atImuTime(folder / "vio_live.txt", run.results)};
   if (run.graph) {
-    estimates.push_back((folder / "loop_live.txt").string());
-    estimates.push_back((folder / "loop_final.txt").string());
+    estimates.push_back(vins::pipeline::atImuTime(folder / "loop_live.txt", run.results));
+    estimates.push_back(vins::pipeline::atImuTime(folder / "loop_final.txt", run.results));
   }
   const bool is_made = vins::pipeline::makeReport(
       {truth, estimates, values["align"].as<std::string>(), (folder / "report.html").string(),
@@ -290,15 +301,8 @@ void report(const po::variables_map& values, const fs::path& folder, const Run& 
   if (is_made) std::cout << "report        " << (folder / "report.html").string() << "\n";
 }
 
-void requireAlignment(const std::string& name) {
-  for (const char* known : {"none", "posyaw", "se3", "sim3"}) {
-    if (name == known) return;
-  }
-  throw vins::InputError("--align: found '" + name + "'; allowed: none, posyaw, se3, sim3");
-}
-
 vins::ToolExit runBag(const po::variables_map& values) {
-  requireAlignment(values["align"].as<std::string>());
+  vins::pipeline::requireAlignment(values["align"].as<std::string>());
   // One thread: the same bytes everywhere, and the CPU time of the work itself.
   cv::setNumThreads(1);
   Run run;
@@ -331,7 +335,8 @@ vins::ToolExit runBag(const po::variables_map& values) {
   report(values, folder, run);
   if (!run.maps.error.empty()) throw vins::InputError(run.maps.error);
   const bool is_tracking = run.results.odometries() > 0 && run.results.isTracking();
-  return is_tracking ? vins::ToolExit::kDone : vins::ToolExit::kFellShort;
+  const bool is_whole = run.recording->summary().damage.empty() && !run.inputs.imuEnd();
+  return is_tracking && is_whole ? vins::ToolExit::kDone : vins::ToolExit::kFellShort;
 }
 
 po::options_description describeOptions() {
@@ -378,7 +383,8 @@ int main(int argc, char** argv) {
       "(tracker.csv, estimator.csv: tracks, landmarks, standard deviations) and, with\n"
       "ground truth, ground_truth.txt, report.html, evaluation.json.\n"
       "Exit code: 0 initialised and tracking to the end, 1 bad input or no room for a file,\n"
-      "2 never initialised or lost at the end, 130 interrupted (what was done so far is\n"
+      "2 never initialised, lost at the end, IMU ended before the images or a damaged bag, 130 "
+      "interrupted (what was done so far is\n"
       "written).\n"};
   return vins::runTool(argc, argv, tool, runBag);
 }

@@ -9,7 +9,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "vins_core/folder.h"
 #include "vins_core/input_error.h"
+#include "vins_core/text_file.h"
+#include "vins_core/trajectory_file.h"
 
 namespace fs = std::filesystem;
 
@@ -24,6 +27,24 @@ bool isProgram(const fs::path& path) {
 }
 
 }  // namespace
+
+void requireAlignment(const std::string& name) {
+  for (const char* known : {"none", "posyaw", "se3", "sim3"}) {
+    if (name == known) return;
+  }
+  throw InputError("--align: found '" + name + "'; allowed: none, posyaw, se3, sim3");
+}
+
+std::string atImuTime(const fs::path& file, const RunResults& results) {
+  const auto shifted = results.atImuTime(readTrajectoryFile(file.string()));
+  if (!shifted) return file.string();
+  const fs::path folder = file.parent_path() / "at_imu_time";
+  makeFolder(folder.string());
+  std::string text;
+  for (const StampedPose& pose : shifted->poses()) text += toTumLine(pose) + "\n";
+  writeTextFile((folder / file.filename()).string(), text);
+  return (folder / file.filename()).string();
+}
 
 std::string findEvaluation() {
   // .../lib/vins_pipeline/run_bag has .../lib/vins_tests beside its folder.

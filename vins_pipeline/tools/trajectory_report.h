@@ -1,7 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "vins_pipeline/run_results.h"
 
 namespace vins::pipeline {
 
@@ -13,6 +16,13 @@ struct TrajectoryReport {
   std::string html;  ///< page to write
   std::string json;  ///< figures to write
 };
+
+/// Throws InputError for an alignment that evaluate_trajectory does not have.
+void requireAlignment(const std::string& name);
+
+/// The trajectory file as it is to be compared with ground truth: a copy at the IMU's time in the
+/// folder at_imu_time beside it, or the file itself where td is 0.
+std::string atImuTime(const std::filesystem::path& file, const RunResults& results);
 
 /// The program evaluate_trajectory of the package vins_tests: beside this program's own package, or
 /// on PATH. Empty where it is not to be found.

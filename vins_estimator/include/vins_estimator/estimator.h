@@ -85,6 +85,9 @@ class Estimator {
   /// dropped, counted and told by an event of the next result.
   void addImu(const ImuSample& sample);
   void addFrame(const FeatureFrame& frame);
+  /// Tells the stamp of an image whose frame waits outside for its IMU samples, so that clocks that
+  /// are apart are found although no frame ever comes [ns].
+  void addImageStamp(Stamp stamp);
   /// A verified loop, for the window's adjustments from 0.15 s after its query keyframe on.
   void addLoopMatch(const LoopMatch& match);
 
@@ -95,6 +98,10 @@ class Estimator {
   /// Works on the oldest frame whose IMU samples have all come; nothing where there is none. Call
   /// until it returns nothing.
   std::optional<EstimatorResult> process();
+
+  /// Findings about the inputs (ImuPlausibility) since the last call. They are no part of a frame's
+  /// result, for bad inputs may be why there is none. Call after process().
+  std::vector<Event> takeInputEvents();
 
   /// Forgets everything but the options and the sequence's number, which rises.
   void reset();

@@ -70,12 +70,16 @@ class Pipeline {
 
   void addImu(const ImuSample& sample);
 
-  /// An image of the first camera, CV_8UC1.
+  /// An image of the first camera, CV_8UC1. Beyond 200 that wait for samples the oldest is dropped.
   void addImage(Stamp stamp, const cv::Mat& image);
 
   /// Works on the oldest image whose samples have come; nothing where there is none. Call until it
   /// returns nothing.
   std::optional<PipelineResult> process();
+
+  /// Findings about the inputs, which come without an image's result too: see
+  /// Estimator::takeInputEvents().
+  std::vector<Event> takeInputEvents() { return estimator_.takeInputEvents(); }
 
   /// The input has ended: images no longer wait for samples.
   void finish() { finished_ = true; }

@@ -57,12 +57,15 @@ struct RecordingSummary {
   std::size_t images = 0;
   std::size_t imu_samples = 0;
   std::size_t truth_poses = 0;
+  /// Up to where the file could be read and why no further; empty where it is whole.
+  std::string damage;
   std::string truth_source;  ///< topic or folder of the ground truth; empty where there is none
 
   double duration() const { return toSeconds(end - begin); }
 };
 
-/// A recorded flight: a stream of its messages in the order of their arrival.
+/// A recorded flight: a stream of its messages in the order of their headers' stamps, or of their
+/// arrival where stamps cannot order (StampOrder).
 class Recording {
  public:
   virtual ~Recording() = default;

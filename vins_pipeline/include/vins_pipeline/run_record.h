@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vins_core/event.h"
@@ -43,6 +44,9 @@ class RunRecord {
 
   /// Stages keep the order in which they first came.
   void addDuration(const std::string& stage, const Duration& duration);
+  /// What the stages took for one image, and tracker and estimator together (tracker+estimator)
+  /// where both have worked.
+  void addFrame(const std::vector<std::pair<std::string, Duration>>& durations);
   void addEvents(const std::vector<Event>& events);
 
   const std::vector<std::string>& stages() const { return stages_; }

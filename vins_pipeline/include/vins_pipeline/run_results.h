@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "vins_core/time.h"
+#include "vins_core/trajectory.h"
 #include "vins_estimator/estimator.h"
 #include "vins_pipeline/pipeline.h"
 #include "vins_pipeline/recording.h"
@@ -20,6 +21,8 @@ class RunResults {
  public:
   void add(const PipelineResult& result);
   void add(const RecordedTruth& truth);
+  /// Counts an event that no stage has made.
+  void add(const Event& event);
 
   /// TUM's form: stamp [s] tx ty tz [m] qx qy qz qw, a line for each odometry.
   const std::string& vioLive() const { return vio_live_; }
@@ -31,6 +34,10 @@ class RunResults {
   /// The truth of the same span in TUM's form; without the quaternions where only positions were
   /// measured. Empty where there is none.
   const std::string& groundTruth() const { return ground_truth_; }
+
+  /// The poses at the IMU's time, stamp + td as it was known at each frame; ground truth is
+  /// compared there. Nothing where td was 0 throughout.
+  std::optional<Trajectory> atImuTime(const Trajectory& poses) const;
 
   std::size_t images() const { return images_; }
   std::size_t frames() const { return frames_; }
@@ -58,6 +65,7 @@ class RunResults {
   void add(const estimator::EstimatorResult& estimate);
   void add(const estimator::Odometry& odometry);
 
+  std::map<Stamp, double> td_;  ///< by the image's stamp [s]
   std::string vio_live_;
   std::string vins_mono_csv_;
   std::string ground_truth_;
