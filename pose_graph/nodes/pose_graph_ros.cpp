@@ -148,10 +148,23 @@ void PoseGraphRos::subscribe(ros::NodeHandle node) {
 }
 
 void PoseGraphRos::onImage(const sensor_msgs::Image::ConstPtr& message) {
-  const cv::Mat image = toGrey(message);
-  if (image.empty()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  images_.add(vins_msgs::toStamp(message->header.stamp), image);
+  images_.add(vins_msgs::toStamp(message->header.stamp), message);
+}
+
+cv::Mat PoseGraphRos::imageOf(Stamp stamp) {
+  sensor_msgs::Image::ConstPtr message;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    message = images_.find(stamp);
+  }
+  // Only a few images become keyframes: the others are never converted.
+  const cv::Mat image = message ? toGrey(message) : cv::Mat();
+  if (image.empty()) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++without_image_;
+  }
+  return image;
 }
 
 void PoseGraphRos::push(Input input) {
@@ -190,12 +203,7 @@ void PoseGraphRos::work() {
 
 void PoseGraphRos::handle(Keyframe keyframe) {
   if (numbering_.take(&keyframe)) ROS_WARN("the estimator has been started again");
-  cv::Mat image;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    image = images_.find(keyframe.stamp);
-    if (image.empty()) ++without_image_;
-  }
+  const cv::Mat image = imageOf(keyframe.stamp);
   const PoseGraphResult result = graph_->addKeyframe(keyframe, image);
   sequence_ = keyframe.sequence;
   for (const nav_msgs::Odometry& odometry : hold_.addKeyframe(keyframe)) correct(odometry);

@@ -58,6 +58,7 @@ class PoseGraphRos {
                const vins_msgs::NodeConfiguration& configuration);
   void subscribe(ros::NodeHandle node);
   void onImage(const sensor_msgs::Image::ConstPtr& message);
+  cv::Mat imageOf(Stamp stamp);
   void push(Input input);
   void work();
   void handle(Keyframe keyframe);
@@ -88,7 +89,7 @@ class PoseGraphRos {
   std::mutex mutex_;  // of all below
   std::condition_variable arrived_;
   std::deque<Input> queue_;
-  RecentImages images_;
+  RecentImages<sensor_msgs::Image::ConstPtr> images_;
   std::size_t dropped_ = 0;
   std::size_t dropped_told_ = 0;  // in the last diagnostics
   std::size_t without_image_ = 0;
