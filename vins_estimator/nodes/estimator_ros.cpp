@@ -163,7 +163,7 @@ void EstimatorRos::handle(Input* input) {
   if (input->imu) estimator_.addImu(*input->imu);
   if (input->match) estimator_.addLoopMatch(*input->match);
   if (input->frame) {
-    estimator_.addFrame(*input->frame);
+    estimator_.addFrame(*std::move(input->frame));
     const std::lock_guard<std::mutex> lock(mutex_);
     --frames_waiting_;
     estimator_.setBacklog(static_cast<int>(frames_waiting_));
@@ -183,7 +183,7 @@ void EstimatorRos::handle(const EstimatorResult& result) {
   }
   publisher_.publish(result);
   const std::lock_guard<std::mutex> lock(mutex_);
-  latest_ = result;
+  latest_ = {result.status, result.statistics, result.rig.td, result.rig_covariance(6, 6)};
   for (const Event& event : result.events) recent_.push_back(event);
   while (recent_.size() > kRecentEvents) recent_.pop_front();
 }
@@ -251,8 +251,8 @@ void EstimatorRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("features", latest_.statistics.features);
   status.add("landmarks", latest_.statistics.landmarks);
   status.add("motion-only adjustment", latest_.statistics.motion_only);
-  status.add("time offset [s]", latest_.rig.td);
-  status.add("time offset, deviation [s]", std::sqrt(latest_.rig_covariance(6, 6)));
+  status.add("time offset [s]", latest_.td);
+  status.add("time offset, deviation [s]", std::sqrt(latest_.td_variance));
   status.add("solve time [ms]", 1e3 * latest_.statistics.solve_seconds);
   status.add("marginalization time [ms]", 1e3 * latest_.statistics.marginalize_seconds);
   status.add("frames waiting", frames_waiting_);
