@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -82,7 +83,7 @@ class Estimator::Implementation {
   }
 
   void addImu(const ImuSample& sample) { queue_.addImu(sample); }
-  void addFrame(const FeatureFrame& frame) { queue_.addFrame(frame); }
+  void addFrame(FeatureFrame frame) { queue_.addFrame(std::move(frame)); }
   void setBacklog(int frames) { backlog_ = frames; }
   void addLoopMatch(const LoopMatch& match) {
     if (status_ == EstimatorStatus::kTracking) waiting_loops_.push_back(match);
@@ -98,12 +99,13 @@ class Estimator::Implementation {
     if (measurements->restarted) reset();
     if (status_ == EstimatorStatus::kTracking) checkInterval(*measurements, &result);
     if (options_.rolling_shutter_readout > 0.0) undoRollingShutter(&*measurements);
-    stillness_.addFrame(measurements->frame, measurements->imu);
+    const auto shared = std::make_shared<const FrameMeasurements>(*std::move(measurements));
+    stillness_.addFrame(shared);
     useLoops(result.stamp);
     if (status_ == EstimatorStatus::kInitializing) {
-      initialize(*measurements, &result);
+      initialize(shared, &result);
     } else {
-      track(*measurements, &result);
+      track(*shared, &result);
     }
     for (Keyframe& keyframe : result.keyframes) keyframe.world = world_;
     result.status = status_;
@@ -207,11 +209,12 @@ class Estimator::Implementation {
     return true;
   }
 
-  void initialize(const FrameMeasurements& measurements, EstimatorResult* result) {
+  void initialize(const SharedMeasurements& shared, EstimatorResult* result) {
+    const FrameMeasurements& measurements = *shared;
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
     continuation_.addFrame(measurements);
     if (tracker_.window().refines_rig && !calibrate(measurements, result)) return;
-    std::optional<Initialization> initialization = initializer_.addFrame(measurements);
+    std::optional<Initialization> initialization = initializer_.addFrame(shared);
     moveEvents(initializer_.takeEvents(), result);
     if (!initialization) return;
     continuation_.apply(&*initialization);
@@ -317,7 +320,7 @@ Estimator::Estimator(Estimator&&) noexcept = default;
 Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::addImu(const ImuSample& sample) { implementation_->addImu(sample); }
-void Estimator::addFrame(const FeatureFrame& frame) { implementation_->addFrame(frame); }
+void Estimator::addFrame(FeatureFrame frame) { implementation_->addFrame(std::move(frame)); }
 void Estimator::addLoopMatch(const LoopMatch& match) { implementation_->addLoopMatch(match); }
 std::optional<EstimatorResult> Estimator::process() { return implementation_->process(); }
 void Estimator::setBacklog(int frames) { implementation_->setBacklog(frames); }

@@ -82,7 +82,7 @@ class Estimator {
   /// Samples and frames in the order of arrival; what is out of order, double or not finite is
   /// dropped, counted and told by an event of the next result.
   void addImu(const ImuSample& sample);
-  void addFrame(const FeatureFrame& frame);
+  void addFrame(FeatureFrame frame);
   /// A verified loop, for the window's adjustments from 0.15 s after its query keyframe on.
   void addLoopMatch(const LoopMatch& match);
 

@@ -57,7 +57,7 @@ class Initializer {
   /// Takes the next frame; the first states if they are found now, the newest frame's the last of
   /// them. Frames that do not follow the ones before (first of a recording, hole in the IMU) begin
   /// anew. After a success it has forgotten all measurements.
-  std::optional<Initialization> addFrame(const FrameMeasurements& measurements);
+  std::optional<Initialization> addFrame(const SharedMeasurements& measurements);
 
   /// What there is to tell since the last call.
   std::vector<Event> takeEvents();
@@ -90,7 +90,7 @@ class Initializer {
 
   InitializerOptions options_;
   StillnessDetector stillness_;
-  std::deque<FrameMeasurements> buffer_;
+  std::deque<SharedMeasurements> buffer_;
   int frames_until_attempt_;
   WaitingReason reason_;  ///< of the last attempt that failed, until it is told
   std::optional<Stamp> last_report_;
