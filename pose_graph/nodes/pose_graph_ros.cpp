@@ -296,6 +296,7 @@ void PoseGraphRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("keyframes without image", without_image_);
   status.add("sequences", statistics_.sequences);
   status.add("loops", statistics_.loops);
+  status.add("loops refined", statistics_.refined);
   status.add("candidates rejected", statistics_.rejected);
   status.add("optimizations", statistics_.optimizations);
   status.add("memory [MB]", 1e-6 * static_cast<double>(statistics_.memory));

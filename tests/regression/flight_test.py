@@ -72,6 +72,16 @@ class FlightTest(LiveCase):
             self.assertIn((edge.query_id, edge.old_id), guesses)
             self.assertNotEqual(edge.T_old_query, guesses[edge.query_id, edge.old_id])
             self.assertTrue(judgement.is_covariance(np.array(edge.covariance).reshape(6, 6)))
+        taken = str(len(listener.loop_edges))
+        # Diagnostics come once a second, and the queue's figures with the message after.
+        self.assertTrue(listener.wait_for(lambda: self._refined(listener) == taken, 4.0),
+                        "the graph has taken %s of %s" % (self._refined(listener), taken))
+
+    @staticmethod
+    def _refined(listener):
+        """Loop edges that the graph has taken from the estimator, as diagnostics say."""
+        return next((values["loops refined"] for values in dict(listener.diagnostics).values()
+                     if "loops refined" in values), None)
 
     def _judge_correction(self, listener, bag):
         """The graph moves the path, from the first loop edge on, and not to the worse."""
