@@ -152,20 +152,40 @@ void PoseGraphRos::subscribe(ros::NodeHandle node) {
 
 void PoseGraphRos::subscribeImages(ros::NodeHandle* node) {
   if (is_compressed_) {
-    subscribers_.push_back(node->subscribe(
-        image_topic_, 10, &PoseGraphRos::onImage<sensor_msgs::CompressedImage>, this));
+    const boost::function<void(const sensor_msgs::CompressedImageConstPtr&)> take =
+        [this](const sensor_msgs::CompressedImageConstPtr& message) {
+          onImage(message->header.stamp, {nullptr, message});
+        };
+    subscribers_.push_back(node->subscribe<sensor_msgs::CompressedImage>(image_topic_, 10, take));
     return;
   }
-  subscribers_.push_back(
-      node->subscribe(image_topic_, 10, &PoseGraphRos::onImage<sensor_msgs::Image>, this));
+  const boost::function<void(const sensor_msgs::ImageConstPtr&)> take =
+      [this](const sensor_msgs::ImageConstPtr& message) {
+        onImage(message->header.stamp, {message, nullptr});
+      };
+  subscribers_.push_back(node->subscribe<sensor_msgs::Image>(image_topic_, 10, take));
 }
 
-template <typename Message>
-void PoseGraphRos::onImage(const boost::shared_ptr<const Message>& message) {
-  const cv::Mat image = toGrey(*message, &converter_);
-  if (image.empty()) return;
+void PoseGraphRos::onImage(const ros::Time& stamp, const ImageMessage& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  images_.add(vins_msgs::toStamp(message->header.stamp), image);
+  images_.add(vins_msgs::toStamp(stamp), message);
+}
+
+cv::Mat PoseGraphRos::imageOf(Stamp stamp) {
+  ImageMessage message;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    message = images_.find(stamp);
+  }
+  // Only a few images become keyframes: the others are never converted.
+  cv::Mat image;
+  if (message.raw) image = toGrey(*message.raw, &converter_);
+  if (message.compressed) image = toGrey(*message.compressed, &converter_);
+  if (image.empty()) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++without_image_;
+  }
+  return image;
 }
 
 void PoseGraphRos::push(Input input) {
@@ -204,12 +224,7 @@ void PoseGraphRos::work() {
 
 void PoseGraphRos::handle(Keyframe keyframe) {
   if (numbering_.take(&keyframe)) ROS_WARN("the estimator has been started again");
-  cv::Mat image;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    image = images_.find(keyframe.stamp);
-    if (image.empty()) ++without_image_;
-  }
+  const cv::Mat image = imageOf(keyframe.stamp);
   const PoseGraphResult result = graph_->addKeyframe(keyframe, image);
   sequence_ = keyframe.sequence;
   for (const nav_msgs::Odometry& odometry : hold_.addKeyframe(keyframe)) correct(odometry);
@@ -302,6 +317,7 @@ void PoseGraphRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("keyframes without image", without_image_);
   status.add("sequences", statistics_.sequences);
   status.add("loops", statistics_.loops);
+  status.add("loops refined", statistics_.refined);
   status.add("candidates rejected", statistics_.rejected);
   status.add("optimizations", statistics_.optimizations);
   status.add("memory [MB]", 1e-6 * static_cast<double>(statistics_.memory));

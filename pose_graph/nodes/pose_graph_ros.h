@@ -53,6 +53,12 @@ class PoseGraphRos {
   void finish();
 
  private:
+  /// An image as it came; one of the two is set, or none where there is no image.
+  struct ImageMessage {
+    sensor_msgs::ImageConstPtr raw;
+    sensor_msgs::CompressedImageConstPtr compressed;
+  };
+
   /// What callbacks hand to the worker, in the order of arrival.
   using Input =
       std::variant<Keyframe, KeyframePoseUpdate, LoopEdge, nav_msgs::Odometry, MapRequest>;
@@ -61,8 +67,8 @@ class PoseGraphRos {
                const vins_msgs::NodeConfiguration& configuration);
   void subscribe(ros::NodeHandle node);
   void subscribeImages(ros::NodeHandle* node);
-  template <typename Message>
-  void onImage(const boost::shared_ptr<const Message>& message);
+  void onImage(const ros::Time& stamp, const ImageMessage& message);
+  cv::Mat imageOf(Stamp stamp);
   void push(Input input);
   void work();
   void handle(Keyframe keyframe);
@@ -95,7 +101,7 @@ class PoseGraphRos {
   std::mutex mutex_;  // of all below
   std::condition_variable arrived_;
   std::deque<Input> queue_;
-  RecentImages images_;
+  RecentImages<ImageMessage> images_;
   std::size_t dropped_ = 0;
   std::size_t dropped_told_ = 0;  // in the last diagnostics
   std::size_t without_image_ = 0;

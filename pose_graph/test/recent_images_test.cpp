@@ -1,6 +1,9 @@
 #include "pose_graph/place/recent_images.h"
 
+#include <memory>
+
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 namespace vins::pose_graph {
 namespace {
@@ -10,7 +13,7 @@ constexpr Stamp kMs = 1'000'000;
 cv::Mat imageOf(int value) { return cv::Mat1b(1, 1, static_cast<uchar>(value)); }
 
 TEST(RecentImages, FindsTheNearestAndForgetsTheOldest) {
-  RecentImages images(0.1);
+  RecentImages<cv::Mat> images(0.1);
   for (int i = 0; i < 5; ++i) images.add(i * 50 * kMs, imageOf(i));
   EXPECT_EQ(images.size(), 3u);
   EXPECT_TRUE(images.find(50 * kMs).empty()) << "forgotten";
@@ -20,7 +23,7 @@ TEST(RecentImages, FindsTheNearestAndForgetsTheOldest) {
 }
 
 TEST(RecentImages, TakesTheNearerOfTwoThatAreClose) {
-  RecentImages images(0.1);
+  RecentImages<cv::Mat> images(0.1);
   images.add(0, imageOf(0));
   images.add(6 * kMs, imageOf(1));
   EXPECT_EQ(images.find(2 * kMs).at<uchar>(0), 0);
@@ -28,7 +31,7 @@ TEST(RecentImages, TakesTheNearerOfTwoThatAreClose) {
 }
 
 TEST(RecentImages, ARestartedRecordingBeginsAnew) {
-  RecentImages images(0.1);
+  RecentImages<cv::Mat> images(0.1);
   images.add(1000 * kMs, imageOf(0));
   images.add(600 * kMs, imageOf(2));
   EXPECT_TRUE(images.find(600 * kMs).empty()) << "late: left out";
@@ -36,6 +39,16 @@ TEST(RecentImages, ARestartedRecordingBeginsAnew) {
   images.add(0, imageOf(1));
   EXPECT_EQ(images.size(), 1u);
   EXPECT_TRUE(images.find(1000 * kMs).empty());
+}
+
+TEST(RecentImages, KeepsAHandleAndLetsGoOfIt) {
+  RecentImages<std::shared_ptr<const int>> images(0.1);
+  const auto message = std::make_shared<const int>(7);
+  images.add(0, message);
+  EXPECT_EQ(images.find(4 * kMs).get(), message.get()) << "the message itself, not a copy";
+  EXPECT_EQ(images.find(6 * kMs), nullptr);
+  images.add(150 * kMs, std::make_shared<const int>(8));
+  EXPECT_EQ(message.use_count(), 1) << "forgotten";
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ from vins_regression import files, recordings, results
 
 _HERE = os.path.dirname(os.path.realpath(__file__))
 BASELINE = os.path.join(_HERE, "baseline.json")
+BOUNDS = os.path.join(_HERE, "bounds.json")
 PAGE = os.path.join(files.WORKSPACE, "docs", "results.md")
 
 _PAGE_TEXT = """# Results
@@ -26,6 +27,13 @@ it was known at its moment; `with loops` is that of the path in the end. `initia
 `completeness` count from the first pose of the ground truth. The CPU time is that of tracker and
 estimator together, and depends on the machine and what else it does; all else does not, but for the
 last bits of another processor's arithmetic.
+
+%s
+## Bounds
+
+No baseline may be beyond these sizes, about one and a half times what was measured when they were
+set: they stand in `tests/regression/bounds.json`, which `--record` never changes. `scripts/regress`
+fails beyond them, whatever the baseline says. A commit that loosens one says why.
 
 %s
 """
@@ -63,16 +71,35 @@ def load_baseline():
         return json.load(file)
 
 
-def record(baseline):
-    """Writes baseline and page."""
+def record(baseline, bounds):
+    """Writes baseline and page; the bounds are shown, and stay as they are."""
     os.makedirs(os.path.dirname(PAGE), exist_ok=True)
     descriptions = {recording.name: recording.description for recording in recordings.ALL}
     for path, text in ((BASELINE, json.dumps(baseline, indent=2, sort_keys=True) + "\n"),
-                       (PAGE, _PAGE_TEXT % results.markdown_table(baseline, descriptions))):
+                       (PAGE, _PAGE_TEXT % (results.markdown_table(baseline, descriptions),
+                                            results.bounds_table(bounds, descriptions)))):
         with open(path + ".part", "w", encoding="utf-8") as file:
             file.write(text.rstrip("\n") + "\n")
         os.replace(path + ".part", path)
         print("regress: written %s" % os.path.relpath(path, files.WORKSPACE))
+
+
+def judge(figures, baseline, bounds):
+    """Says what is clearly worse than the baseline or beyond its bounds; the exit code.
+
+    Args:
+        figures: {name: figures, None where it was not run}; baseline: {name: figures};
+        bounds: as results.load_bounds gives them.
+    """
+    runs = {name: now for name, now in figures.items() if now}
+    bad = [name for name, now in runs.items() if results.worse(now, baseline.get(name, {}))]
+    print("regress: " + ("clearly worse: " + ", ".join(bad) if bad else "nothing is clearly worse"))
+    for name, now in runs.items():
+        for figure in results.beyond(now, bounds[name]):
+            bad.append(name)
+            print("regress: beyond its bound: %s, %s: %s, at most %s allowed"
+                  % (name, figure.heading, now.get(figure.key), bounds[name][figure.key]))
+    return 1 if bad else 0
 
 
 def parser():
@@ -84,11 +111,12 @@ def parser():
         description="Runs a fixed set of recordings through run_bag and prints the figures beside "
                     "the baseline's.\nSimulated ones are rendered once, into the build folder; "
                     "real ones are looked for in\n../shared/data or where VINS_SHARED_DATA says.",
-        epilog="clearly worse (marked by \"!\") is:\n%s\nexit code: 0 nothing is clearly worse, 1 something is, "
-               "2 it could not be run" % tolerances)
+        epilog="clearly worse (marked by \"!\") is:\n%s\nexit code: 0 nothing is clearly worse, 1 something is or is beyond its bound, "
+               "2 it could not be run\nAbsolute bounds, which hold whatever the baseline says: "
+               "tests/regression/bounds.json" % tolerances)
     made.add_argument("--record", action="store_true",
                       help="make these figures the baseline: tests/regression/baseline.json and "
-                           "docs/results.md")
+                           "docs/results.md; the bounds stay")
     made.add_argument("--only", metavar="NAME", nargs="+",
                       choices=[recording.name for recording in recordings.ALL],
                       help="of the set: " + ", ".join(r.name for r in recordings.ALL))
@@ -102,21 +130,19 @@ def main():
     options = parser().parse_args()
     chosen = [r for r in recordings.ALL if not options.only or r.name in options.only]
     baseline = load_baseline()
+    bounds = results.load_bounds(BOUNDS, [recording.name for recording in recordings.ALL])
     figures = {recording.name: run(recording, options.out) for recording in chosen}
     print(results.text_table([(name, now, baseline.get(name)) for name, now in figures.items()]),
           end="")
     if options.record:
-        record({**baseline, **{name: now for name, now in figures.items() if now}})
-        return 0
-    bad = [name for name, now in figures.items()
-           if now and results.worse(now, baseline.get(name, {}))]
-    print("regress: " + ("clearly worse: " + ", ".join(bad) if bad else "nothing is clearly worse"))
-    return 1 if bad else 0
+        record({**baseline, **{name: now for name, now in figures.items() if now}}, bounds)
+        baseline = {}
+    return judge(figures, baseline, bounds)
 
 
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except (OSError, RuntimeError, subprocess.CalledProcessError) as error:
+    except (OSError, RuntimeError, ValueError, subprocess.CalledProcessError) as error:
         print("regress: %s" % error, file=sys.stderr)
         sys.exit(2)

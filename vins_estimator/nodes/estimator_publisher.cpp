@@ -108,9 +108,11 @@ void EstimatorPublisher::addToPath(const nav_msgs::Odometry& odometry) {
 }
 
 void EstimatorPublisher::publishCamera(const EstimatorResult& result) {
+  if (camera_.getNumSubscribers() + camera_visual_.getNumSubscribers() == 0) return;
   const nav_msgs::Odometry camera = vins_msgs::ofChildFrame(toOdometry(*result.odometry, frames_),
                                                             frames_.camera, result.rig.T_bc);
   camera_.publish(camera);
+  if (camera_visual_.getNumSubscribers() == 0) return;
   visualization_msgs::MarkerArray frustum;
   frustum.markers.push_back(cameraFrustum(0.4));
   frustum.markers.front().header = camera.header;
@@ -160,17 +162,25 @@ void EstimatorPublisher::publishWindow(const EstimatorResult& result) {
 }
 
 void EstimatorPublisher::publishClouds(const EstimatorResult& result) {
-  sensor_msgs::PointCloud2 cloud = toCloud(result.landmarks);
-  cloud.header.stamp = vins_msgs::toRosTime(result.stamp);
-  cloud.header.frame_id = frames_.odom;
-  cloud_.publish(cloud);
-  if (result.keyframes.empty()) return;
+  std_msgs::Header header;
+  header.stamp = vins_msgs::toRosTime(result.stamp);
+  header.frame_id = frames_.odom;
+  if (cloud_.getNumSubscribers() > 0) {
+    sensor_msgs::PointCloud2 cloud = toCloud(result.landmarks);
+    cloud.header = header;
+    cloud_.publish(cloud);
+  }
+  if (!result.keyframes.empty()) addToHistory(result.keyframes.back(), header);
+}
+
+/// Accumulates without a subscriber, too: whoever comes later sees all that there was.
+void EstimatorPublisher::addToHistory(const Keyframe& keyframe, const std_msgs::Header& header) {
   std::vector<LandmarkPoint> points;
-  for (const KeyframePoint& point : result.keyframes.back().points) {
+  for (const KeyframePoint& point : keyframe.points) {
     points.push_back({point.id, point.position_w});
   }
   append(toCloud(points), kMaxHistoryPoints, &history_);
-  history_.header = cloud.header;
+  history_.header = header;
   if (history_topic_.getNumSubscribers() > 0) history_topic_.publish(history_);
 }
 

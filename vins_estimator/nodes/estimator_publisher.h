@@ -3,6 +3,7 @@
 #include <nav_msgs/Path.h>
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <std_msgs/Header.h>
 #include <tf2_ros/transform_broadcaster.h>
 
 #include "base_frame.h"
@@ -40,6 +41,7 @@ class EstimatorPublisher {
   void publishCameraTransform(const EstimatorResult& result);
   void publishWindow(const EstimatorResult& result);
   void publishClouds(const EstimatorResult& result);
+  void addToHistory(const Keyframe& keyframe, const std_msgs::Header& header);
   void publishKeyframes(const EstimatorResult& result);
   void publishLoopEdges(const EstimatorResult& result);
 

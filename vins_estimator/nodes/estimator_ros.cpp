@@ -163,7 +163,7 @@ void EstimatorRos::handle(Input* input) {
   if (input->imu) estimator_.addImu(*input->imu);
   if (input->match) estimator_.addLoopMatch(*input->match);
   if (input->frame) {
-    estimator_.addFrame(*input->frame);
+    estimator_.addFrame(*std::move(input->frame));
     const std::lock_guard<std::mutex> lock(mutex_);
     --frames_waiting_;
     estimator_.setBacklog(static_cast<int>(frames_waiting_));
@@ -192,7 +192,8 @@ void EstimatorRos::handle(const EstimatorResult& result) {
   }
   publisher_.publish(result);
   const std::lock_guard<std::mutex> lock(mutex_);
-  latest_ = result;
+  latest_ = {result.status, result.statistics, result.rig.td, result.rig_covariance(6, 6),
+             result.scale_sigma};
 }
 
 void EstimatorRos::restart() {
@@ -235,7 +236,8 @@ void EstimatorRos::summarize(diagnostic_updater::DiagnosticStatusWrapper* status
   const std::string missing = missingInput();
   if (!missing.empty()) return status->summary(DiagnosticStatus::WARN, missing);
   if (latest_.status == EstimatorStatus::kTracking) {
-    status->summary(DiagnosticStatus::OK, "tracking");
+    status->summary(DiagnosticStatus::OK,
+                    latest_.scale_sigma ? "tracking; the scale converges: move on" : "tracking");
   } else {
     status->summary(DiagnosticStatus::WARN, waitingReason());
   }
@@ -254,12 +256,13 @@ void EstimatorRos::summarize(diagnostic_updater::DiagnosticStatusWrapper* status
 void EstimatorRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
   summarize(&status);
-  status.add("state", toString(latest_.status));
+  status.add("state", latest_.scale_sigma ? "converging" : toString(latest_.status));
+  if (latest_.scale_sigma) status.add("scale, deviation [%]", 100.0 * *latest_.scale_sigma);
   status.add("features", latest_.statistics.features);
   status.add("landmarks", latest_.statistics.landmarks);
   status.add("motion-only adjustment", latest_.statistics.motion_only);
-  status.add("time offset [s]", latest_.rig.td);
-  status.add("time offset, deviation [s]", std::sqrt(latest_.rig_covariance(6, 6)));
+  status.add("time offset [s]", latest_.td);
+  status.add("time offset, deviation [s]", std::sqrt(latest_.td_variance));
   status.add("solve time [ms]", 1e3 * latest_.statistics.solve_seconds);
   status.add("marginalization time [ms]", 1e3 * latest_.statistics.marginalize_seconds);
   status.add("frames waiting", frames_waiting_);

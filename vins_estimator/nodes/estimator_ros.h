@@ -47,6 +47,15 @@ class EstimatorRos {
     bool restart = false;
   };
 
+  /// What diagnostics show of a result.
+  struct Figures {
+    EstimatorStatus status = EstimatorStatus::kInitializing;
+    EstimatorStatistics statistics;
+    double td = 0.0;                    ///< [s]
+    double td_variance = 0.0;           ///< zero where it is not estimated [s^2]
+    std::optional<double> scale_sigma;  ///< relative, while the scale converges
+  };
+
   EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
                const vins_msgs::NodeConfiguration& configuration);
   void onImu(const sensor_msgs::Imu::ConstPtr& message);
@@ -83,7 +92,7 @@ class EstimatorRos {
   std::size_t frames_dropped_told_ = 0;  // in the last diagnostics
   ros::WallTime last_imu_, last_frame_;  // of arrival; zero: none yet
   bool stopping_ = false;
-  EstimatorResult latest_;
+  Figures latest_;
   std::deque<Event> recent_;
 
   diagnostic_updater::Updater diagnostics_;

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <memory>
 #include <string>
 #include <utility>
 
+#include "part_options.h"
 #include "vins_estimator/health/continuation.h"
 #include "vins_estimator/health/failure_detector.h"
 #include "vins_estimator/health/imu_plausibility.h"
 #include "vins_estimator/health/stillness.h"
 #include "vins_estimator/health/track_watch.h"
+#include "vins_estimator/inertial/body_twist.h"
 #include "vins_estimator/inertial/measurement_queue.h"
 #include "vins_estimator/initialization/extrinsic_rotation.h"
 #include "vins_estimator/initialization/initializer.h"
@@ -22,40 +25,6 @@
 namespace vins::estimator {
 namespace {
 
-InitializerOptions initializerOptions(const EstimatorOptions& options) {
-  InitializerOptions result;
-  result.imu = options.imu;
-  result.T_bc = options.T_bc;
-  result.pixel_noise = options.pixel_noise;
-  result.stillness.gravity = options.imu.gravity;
-  result.max_frames = options.window_size + 1;
-  return result;
-}
-
-ImuPlausibilityOptions plausibilityOptions(const EstimatorOptions& options) {
-  ImuPlausibilityOptions result;
-  result.gravity = options.imu.gravity;
-  if (options.extrinsic != ExtrinsicMode::kUnknown) result.R_bc = options.T_bc.rotation;
-  return result;
-}
-
-MeasurementQueueOptions queueOptions() {
-  MeasurementQueueOptions options;
-  options.max_frames = 200;  // ten seconds without the IMU
-  return options;
-}
-
-TurnCalibratorOptions calibratorOptions(const EstimatorOptions& options) {
-  TurnCalibratorOptions result;
-  result.pixel_noise = options.pixel_noise;
-  if (options.extrinsic == ExtrinsicMode::kUnknown) result.prior.rotation_sigma = 0.0;
-  if (options.extrinsic == ExtrinsicMode::kRefined) {
-    result.prior.rotation_sigma = options.extrinsic_rotation_sigma;
-  }
-  if (options.estimate_td) result.prior.td_sigma = options.td_sigma;
-  return result;
-}
-
 /// From a keyframe's image to the use of its loop: three images at 20 Hz, in which a place is
 /// recognised on any machine that keeps up [s].
 constexpr double kLoopDelay = 0.15;
@@ -65,13 +34,6 @@ constexpr double kLeastTimeSigma = 3e-3;
 
 void moveEvents(std::vector<Event> events, EstimatorResult* result) {
   for (Event& event : events) result->events.push_back(std::move(event));
-}
-
-/// Mean rate over the samples, as a turn over their time.
-Eigen::Vector3d meanRate(const std::vector<ImuSample>& samples) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const ImuSample& sample : samples) sum += sample.angular_velocity;
-  return samples.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(samples.size()));
 }
 
 }  // namespace
@@ -99,9 +61,9 @@ class Estimator::Implementation {
     plausibility_.addImu(sample);
     queue_.addImu(sample);
   }
-  void addFrame(const FeatureFrame& frame) {
+  void addFrame(FeatureFrame frame) {
     plausibility_.addImage(frame.stamp);
-    queue_.addFrame(frame);
+    queue_.addFrame(std::move(frame));
   }
   void addImageStamp(Stamp stamp) { plausibility_.addImage(stamp); }
   std::vector<Event> takeInputEvents() { return plausibility_.takeEvents(); }
@@ -120,12 +82,13 @@ class Estimator::Implementation {
     if (measurements->restarted) reset();
     if (status_ == EstimatorStatus::kTracking) checkInterval(*measurements, &result);
     if (options_.rolling_shutter_readout > 0.0) undoRollingShutter(&*measurements);
-    stillness_.addFrame(measurements->frame, measurements->imu);
+    const auto shared = std::make_shared<const FrameMeasurements>(*std::move(measurements));
+    stillness_.addFrame(shared);
     useLoops(result.stamp);
     if (status_ == EstimatorStatus::kInitializing) {
-      initialize(*measurements, &result);
+      initialize(shared, &result);
     } else {
-      track(*measurements, &result);
+      track(shared, &result);
     }
     for (Keyframe& keyframe : result.keyframes) keyframe.world = world_;
     result.status = status_;
@@ -277,12 +240,13 @@ class Estimator::Implementation {
     return true;
   }
 
-  void initialize(const FrameMeasurements& measurements, EstimatorResult* result) {
+  void initialize(const SharedMeasurements& shared, EstimatorResult* result) {
+    const FrameMeasurements& measurements = *shared;
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
     continuation_.addFrame(measurements);
     if (tracker_.window().refines_rig && !calibrate(measurements, result)) return;
     std::optional<Initialization> initialization =
-        initializer_.addFrame(measurements, !awaitsTimeOffset(result->stamp));
+        initializer_.addFrame(shared, !awaitsTimeOffset(result->stamp));
     moveEvents(initializer_.takeEvents(), result);
     if (!initialization) return;
     continuation_.apply(&*initialization);
@@ -313,9 +277,9 @@ class Estimator::Implementation {
 
   /// Solves the start again while its scale converges; the window begins anew with a solution that
   /// knows it clearly better, where the body stands now. Returns whether it has.
-  bool refineStart(const FrameMeasurements& measurements, EstimatorResult* result) {
+  bool refineStart(const SharedMeasurements& shared, EstimatorResult* result) {
     if (!convergence_.scaleSigma()) return false;
-    initializer_.remember(measurements);
+    initializer_.remember(shared);
     if (!convergence_.isDue(result->stamp)) return false;
     initializer_.setExtrinsic(tracker_.window().rig.T_bc);
     std::optional<Initialization> again = initializer_.solveAgain();
@@ -323,7 +287,7 @@ class Estimator::Implementation {
     const WindowFrame& before = tracker_.window().frames.back();
     Preintegration imu(options_.imu, before.state.value().accelerometer_bias,
                        before.state.value().gyroscope_bias);
-    imu.integrate(measurements.imu);
+    imu.integrate(shared->imu);
     moveNewestTo(imu.predict(before.state.value(), tracker_.window().g_w), before.covariance,
                  &*again);
     tracker_.clear();
@@ -332,12 +296,13 @@ class Estimator::Implementation {
                               "start_refined",
                               "the start was solved again with more motion",
                               {{"scale_sigma_percent", 100.0 * again->scale_sigma}}});
-    beginWindow(*again, measurements, result);
+    beginWindow(*again, *shared, result);
     return true;
   }
 
-  void track(const FrameMeasurements& measurements, EstimatorResult* result) {
-    if (refineStart(measurements, result)) return;
+  void track(const SharedMeasurements& shared, EstimatorResult* result) {
+    if (refineStart(shared, result)) return;
+    const FrameMeasurements& measurements = *shared;
     const NavState predicted = tracker_.append(measurements, stillness_.isStill());
     const auto features = static_cast<int>(measurements.frame.observations.size());
     const std::optional<Event> event = track_watch_.addFrame(result->stamp, features);
@@ -383,18 +348,11 @@ class Estimator::Implementation {
     }
   }
 
-  /// The newest reading. Where it was interpolated at the frame's time, noise of its two neighbours
-  /// is averaged in it.
   void reportRate(const std::vector<ImuSample>& samples, Odometry* odometry) const {
     if (samples.empty()) return;
     odometry->angular_velocity_b = samples.back().angular_velocity - odometry->state.gyroscope_bias;
-    const double period = queue_.imuPeriod();
-    const double last = samples.size() < 2
-                            ? period
-                            : toSeconds(samples.back().stamp - samples[samples.size() - 2].stamp);
-    const double share = std::min(1.0, last / period);
-    const double averaging = share * share + (1.0 - share) * (1.0 - share);
-    odometry->angular_velocity_variance = averaging * options_.imu.gyroscopeVariance(period);
+    odometry->angular_velocity_variance =
+        newestRateVariance(samples, queue_.imuPeriod(), options_.imu);
   }
 
   EstimatorOptions options_;
@@ -428,7 +386,7 @@ Estimator::Estimator(Estimator&&) noexcept = default;
 Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::addImu(const ImuSample& sample) { implementation_->addImu(sample); }
-void Estimator::addFrame(const FeatureFrame& frame) { implementation_->addFrame(frame); }
+void Estimator::addFrame(FeatureFrame frame) { implementation_->addFrame(std::move(frame)); }
 void Estimator::addImageStamp(Stamp stamp) { implementation_->addImageStamp(stamp); }
 void Estimator::addLoopMatch(const LoopMatch& match) { implementation_->addLoopMatch(match); }
 std::optional<EstimatorResult> Estimator::process() { return implementation_->process(); }

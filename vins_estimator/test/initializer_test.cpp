@@ -29,7 +29,7 @@ Outcome runOver(const SyntheticFlight& flight, double begin, double duration) {
   Initializer initializer(optionsFor(flight));
   Outcome run;
   for (const FrameMeasurements& measurements : flight.record(begin, duration)) {
-    run.found = initializer.addFrame(measurements);
+    run.found = initializer.addFrame(std::make_shared<const FrameMeasurements>(measurements));
     for (Event& event : initializer.takeEvents()) run.events.push_back(event);
     run.time = toSeconds(measurements.frame.stamp) - begin;
     if (run.found) break;
@@ -167,7 +167,8 @@ TEST(Initializer, FailedAttemptsLeaveNothingBehind) {
   std::optional<Initialization> found;
   for (auto& measurements : recording) {
     if (toSeconds(measurements.frame.stamp) < 3.0) measurements.frame.observations.clear();
-    if ((found = initializer.addFrame(measurements))) break;
+    if ((found = initializer.addFrame(std::make_shared<const FrameMeasurements>(measurements))))
+      break;
   }
   ASSERT_TRUE(found);
   EXPECT_NEAR(pathScale(*found, flight), 1.0, 0.05);

@@ -23,7 +23,7 @@ SyntheticFlight flightWith(const testing::Motion& motion) {
 bool isStillAfter(const std::vector<FrameMeasurements>& recording) {
   StillnessDetector detector{StillnessOptions()};
   for (const auto& measurements : recording) {
-    detector.addFrame(measurements.frame, measurements.imu);
+    detector.addFrame(std::make_shared<const FrameMeasurements>(measurements));
   }
   return detector.isStill();
 }

@@ -26,6 +26,13 @@ def position_error(ground_truth, poses, **settings):
     return evaluated(ground_truth, poses, **settings).statistics("position").rmse
 
 
+def distances(poses, others):
+    """(stamp, metres between the positions) where two lists of StampedPose have the same stamp."""
+    positions = {pose.stamp: np.array(pose.position) for pose in others}
+    return [(pose.stamp, np.linalg.norm(pose.position - positions[pose.stamp]))
+            for pose in poses if pose.stamp in positions]
+
+
 def rate(stamps):
     """Messages a second, by the middle one of the distances in time.
 

@@ -7,7 +7,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
-from vins_msgs.msg import Event, LoopMatch
+from vins_msgs.msg import Event, LoopEdge, LoopMatch
 
 from vins_regression import topics
 
@@ -21,6 +21,7 @@ class Listener:
         propagated: (stamp, arrival) of /vins_estimator/imu_propagate.
         frames: (stamp, sequence) of /feature_tracker/feature.
         loops: vins_msgs/LoopMatch.
+        loop_edges: vins_msgs/LoopEdge, as the estimator gives refined loops back.
         events: Told, of estimator and pose graph.
         transforms: set of (parent, child).
         diagnostics: {name of a status: {key: value}}, the latest.
@@ -29,7 +30,7 @@ class Listener:
 
     def __init__(self):
         self.odometry, self.corrected, self.propagated = [], [], []
-        self.frames, self.loops, self.events = [], [], []
+        self.frames, self.loops, self.loop_edges, self.events = [], [], [], []
         self.transforms = set()
         self.diagnostics, self.levels = {}, {}
         self._changed = threading.Condition()
@@ -40,6 +41,7 @@ class Listener:
             self._hear("/feature_tracker/feature", rospy.AnyMsg,
                        lambda message: self.frames.append(topics.frame_number(message))),
             self._hear("/pose_graph/loop_match", LoopMatch, self.loops.append),
+            self._hear("/vins_estimator/loop_edge", LoopEdge, self.loop_edges.append),
             self._hear("/vins_estimator/event", Event, self._on_event),
             self._hear("/pose_graph/event", Event, self._on_event),
             self._hear("/tf", TFMessage, self._on_transforms),

@@ -26,6 +26,10 @@ FIGURES = (
 )
 
 
+# Figures that may have an absolute bound: the largest size that is allowed.
+BOUNDED = ("ate_m", "loop_ate_m", "scale_error_percent", "initialised_s")
+
+
 def read_run(folder):
     """The figures of a folder that run_bag has written.
 
@@ -69,6 +73,44 @@ def worse(now, before):
                  or figure.is_worse(now[figure.key], before[figure.key]))]
 
 
+def load_bounds(path, names):
+    """Absolute bounds of the recordings: {name: {Figure.key: largest size}}.
+
+    Args:
+        path: of the JSON file; names: of all recordings, each of which must have all of BOUNDED.
+
+    Raises:
+        ValueError: names file, recording and figure of what is missing, unknown or no number above
+            zero.
+    """
+    with open(path, encoding="utf-8") as file:
+        bounds = json.load(file)
+    for name in sorted(set(names) | set(bounds)):
+        if name not in names:
+            raise ValueError("%s: unknown recording %s; known: %s" % (path, name, ", ".join(names)))
+        for key in sorted(set(BOUNDED) | set(bounds.get(name, {}))):
+            value = bounds.get(name, {}).get(key)
+            if key not in BOUNDED:
+                raise ValueError("%s: %s: unknown figure %s; known: %s"
+                                 % (path, name, key, ", ".join(BOUNDED)))
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0.0:
+                raise ValueError("%s: %s: %s is %s; needed is a number above 0"
+                                 % (path, name, key, value))
+    return bounds
+
+
+def beyond(now, bounds):
+    """The Figures in which a run is beyond its absolute bounds.
+
+    Args:
+        now: {Figure.key: number or None}; a figure that is lost is beyond its bound.
+        bounds: {Figure.key: largest size that is allowed}.
+    """
+    return [figure for figure in FIGURES
+            if figure.key in bounds
+            and (now.get(figure.key) is None or abs(now[figure.key]) > bounds[figure.key])]
+
+
 def text_table(rows):
     """A table for the terminal: a line for each run, and below it one for its baseline.
 
@@ -104,6 +146,21 @@ def markdown_table(baseline, descriptions):
         if name in baseline:
             cells = [_shown(figure, baseline[name]) for figure in FIGURES]
             lines.append("| %s | %s |" % (text, " | ".join(cells)))
+    return "\n".join(lines) + "\n"
+
+
+def bounds_table(bounds, descriptions):
+    """The absolute bounds for docs/results.md.
+
+    Args:
+        bounds: {name: {Figure.key: largest size}}; descriptions: {name: what the recording is}.
+    """
+    shown = [figure for figure in FIGURES if figure.key in BOUNDED]
+    lines = ["| recording | " + " | ".join(figure.heading for figure in shown) + " |",
+             "|---" * (len(shown) + 1) + "|"]
+    for name, text in descriptions.items():
+        cells = [(figure.format % bounds[name][figure.key]).lstrip("+") for figure in shown]
+        lines.append("| %s | %s |" % (text, " | ".join(cells)))
     return "\n".join(lines) + "\n"
 
 

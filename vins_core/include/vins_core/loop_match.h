@@ -17,7 +17,7 @@ struct MatchedFeature {
 };
 
 /// A verified loop, from the pose graph to the estimator: the window's keyframe `query_id` sees
-/// what the old keyframe `old_id` saw. The old pose is constant in the window's adjustment.
+/// what the old keyframe `old_id` saw. The window adjusts the old pose, too: position and yaw.
 struct LoopMatch {
   std::int64_t query_id = 0;
   std::int64_t old_id = 0;

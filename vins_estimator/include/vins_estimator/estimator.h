@@ -84,7 +84,7 @@ class Estimator {
   /// Samples and frames in the order of arrival; what is out of order, double or not finite is
   /// dropped, counted and told by an event of the next result.
   void addImu(const ImuSample& sample);
-  void addFrame(const FeatureFrame& frame);
+  void addFrame(FeatureFrame frame);
   /// Tells the stamp of an image whose frame waits outside for its IMU samples, so that clocks that
   /// are apart are found although no frame ever comes [ns].
   void addImageStamp(Stamp stamp);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "vins_core/option_check.h"
 #include "vins_core/time.h"
@@ -164,11 +165,11 @@ StillnessDetector::StillnessDetector(const StillnessOptions& options) : options_
   options_.validate();
 }
 
-bool StillnessDetector::addFrame(const FeatureFrame& frame, const std::vector<ImuSample>& imu) {
-  entries_.push_back({frame, imu});
-  const Stamp oldest = frame.stamp - toNanoseconds(options_.window);
+bool StillnessDetector::addFrame(SharedMeasurements measurements) {
+  const Stamp oldest = measurements->frame.stamp - toNanoseconds(options_.window);
+  entries_.push_back(std::move(measurements));
   // The frame at the window's begin stays, or the one before it.
-  while (entries_.size() > 1 && entries_[1].frame.stamp <= oldest) entries_.pop_front();
+  while (entries_.size() > 1 && entries_[1]->frame.stamp <= oldest) entries_.pop_front();
   still_ = false;
   imu_ = ImuStillness();
   images_ = ImageStillness();
@@ -177,9 +178,10 @@ bool StillnessDetector::addFrame(const FeatureFrame& frame, const std::vector<Im
   std::vector<ImuSample> samples;
   std::vector<const FeatureFrame*> frames;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    frames.push_back(&entries_[i].frame);
+    frames.push_back(&entries_[i]->frame);
     // The first frame's samples lie before the window.
-    if (i > 0) samples.insert(samples.end(), entries_[i].imu.begin(), entries_[i].imu.end());
+    const std::vector<ImuSample>& imu = entries_[i]->imu;
+    if (i > 0) samples.insert(samples.end(), imu.begin(), imu.end());
   }
   imu_ = judgeImu(samples, options_);
   images_ = judgeImages(frames, options_);
@@ -190,7 +192,7 @@ bool StillnessDetector::addFrame(const FeatureFrame& frame, const std::vector<Im
 bool StillnessDetector::spansWindow() const {
   // Camera periods jitter by some microseconds.
   constexpr double kJitter = 0.01;
-  const Stamp span = entries_.back().frame.stamp - entries_.front().frame.stamp;
+  const Stamp span = entries_.back()->frame.stamp - entries_.front()->frame.stamp;
   return toSeconds(span) >= options_.window - kJitter;
 }
 

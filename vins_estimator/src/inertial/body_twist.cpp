@@ -1,5 +1,7 @@
 #include "vins_estimator/inertial/body_twist.h"
 
+#include <algorithm>
+
 #include "vins_core/so3.h"
 
 namespace vins::estimator {
@@ -19,6 +21,16 @@ BodyTwist bodyTwist(const NavState& state, const Matrix15d& covariance,
   twist.covariance = J * covariance * J.transpose();
   twist.covariance.diagonal().tail<3>().array() += angular_velocity_variance;
   return twist;
+}
+
+double newestRateVariance(const std::vector<ImuSample>& samples, double period,
+                          const ImuNoise& noise) {
+  const double last = samples.size() < 2
+                          ? period
+                          : toSeconds(samples.back().stamp - samples[samples.size() - 2].stamp);
+  const double share = std::min(1.0, last / period);
+  const double averaging = share * share + (1.0 - share) * (1.0 - share);
+  return averaging * noise.gyroscopeVariance(period);
 }
 
 }  // namespace vins::estimator

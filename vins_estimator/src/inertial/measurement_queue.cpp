@@ -104,7 +104,7 @@ void MeasurementQueue::jumpBack(Stamp from, Stamp to) {
   tell(to, Severity::kWarning, "time_jump", text.str(), {{"jump_s", toSeconds(to - from)}});
 }
 
-void MeasurementQueue::addFrame(const FeatureFrame& frame) {
+void MeasurementQueue::addFrame(FeatureFrame frame) {
   if (newest_frame_) {
     const double step = toSeconds(frame.stamp - *newest_frame_);
     if (step < -options_.max_jump) {
@@ -120,13 +120,14 @@ void MeasurementQueue::addFrame(const FeatureFrame& frame) {
     tellDropped(*newest_imu_);
     return;
   }
-  newest_frame_ = frame.stamp;
-  frames_.push_back(frame);
+  const Stamp stamp = frame.stamp;
+  newest_frame_ = stamp;
+  frames_.push_back(std::move(frame));
   if (options_.max_frames > 0 && frames_.size() > static_cast<std::size_t>(options_.max_frames)) {
     frames_.pop_front();
     ++dropped_.overflown;
   }
-  tellDropped(frame.stamp);
+  tellDropped(stamp);
 }
 
 bool MeasurementQueue::isFarAhead(Stamp stamp) const {

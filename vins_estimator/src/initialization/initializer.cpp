@@ -63,7 +63,7 @@ std::vector<Event> Initializer::takeEvents() {
 }
 
 double Initializer::bufferedSpan() const {
-  return toSeconds(buffer_.back().frame.stamp - buffer_.front().frame.stamp);
+  return toSeconds(buffer_.back()->frame.stamp - buffer_.front()->frame.stamp);
 }
 
 void Initializer::forgetOld() {
@@ -71,25 +71,25 @@ void Initializer::forgetOld() {
   while (bufferedSpan() > longest) buffer_.pop_front();
 }
 
-void Initializer::push(const FrameMeasurements& measurements) {
-  const bool follows = !measurements.is_first && !measurements.restarted &&
-                       measurements.longest_gap <= options_.max_gap;
+void Initializer::push(const SharedMeasurements& measurements) {
+  const bool follows = !measurements->is_first && !measurements->restarted &&
+                       measurements->longest_gap <= options_.max_gap;
   if (!follows) clear();
   buffer_.push_back(measurements);
   forgetOld();
 }
 
-void Initializer::remember(const FrameMeasurements& measurements) { push(measurements); }
+void Initializer::remember(const SharedMeasurements& measurements) { push(measurements); }
 
 std::optional<Initialization> Initializer::solveAgain() {
   if (buffer_.empty() || bufferedSpan() + kJitter < options_.min_span) return std::nullopt;
   return startMoving();
 }
 
-std::optional<Initialization> Initializer::addFrame(const FrameMeasurements& measurements,
+std::optional<Initialization> Initializer::addFrame(const SharedMeasurements& measurements,
                                                     bool may_move) {
   push(measurements);
-  stillness_.addFrame(measurements.frame, measurements.imu);
+  stillness_.addFrame(measurements);
 
   std::optional<Initialization> found;
   --frames_until_attempt_;
@@ -103,23 +103,23 @@ std::optional<Initialization> Initializer::addFrame(const FrameMeasurements& mea
   if (found && found->at_rest) {
     clear();
   } else if (!found) {
-    report(measurements.frame.stamp);
+    report(measurements->frame.stamp);
   }
   return found;
 }
 
 std::optional<Initialization> Initializer::startAtRest() const {
   const Stamp oldest =
-      buffer_.back().frame.stamp - toNanoseconds(options_.stillness.window + kJitter);
+      buffer_.back()->frame.stamp - toNanoseconds(options_.stillness.window + kJitter);
   std::vector<const FrameMeasurements*> interval;
-  for (const FrameMeasurements& measurements : buffer_) {
-    if (measurements.frame.stamp >= oldest) interval.push_back(&measurements);
+  for (const SharedMeasurements& measurements : buffer_) {
+    if (measurements->frame.stamp >= oldest) interval.push_back(measurements.get());
   }
   return initializeAtRest(interval, options_.imu, options_.at_rest);
 }
 
 std::optional<Initialization> Initializer::startMoving() {
-  reason_ = explainFewTracks(static_cast<int>(buffer_.back().frame.observations.size()));
+  reason_ = explainFewTracks(static_cast<int>(buffer_.back()->frame.observations.size()));
   for (const FrameIndices& chosen : chooseFrames()) {
     const std::vector<Preintegration> imu = integrateBetween(chosen);
     const VisualStructure structure = buildStructure(
@@ -147,9 +147,9 @@ std::vector<Initializer::FrameIndices> Initializer::chooseFrames() const {
 
 /// Indices of frames evenly spread over the last `span` seconds, the newest among them.
 Initializer::FrameIndices Initializer::spreadOver(double span) const {
-  const Stamp oldest = buffer_.back().frame.stamp - toNanoseconds(span + kJitter);
+  const Stamp oldest = buffer_.back()->frame.stamp - toNanoseconds(span + kJitter);
   std::size_t first = 0;
-  while (buffer_[first].frame.stamp < oldest) ++first;
+  while (buffer_[first]->frame.stamp < oldest) ++first;
   const std::size_t available = buffer_.size() - first;
   const std::size_t count = std::min(available, static_cast<std::size_t>(options_.max_frames));
   FrameIndices chosen;
@@ -161,11 +161,11 @@ Initializer::FrameIndices Initializer::spreadOver(double span) const {
 
 int Initializer::sharedFeatures(std::size_t a, std::size_t b) const {
   std::unordered_set<std::int64_t> ids;
-  for (const FeatureObservation& observation : buffer_[a].frame.observations) {
+  for (const FeatureObservation& observation : buffer_[a]->frame.observations) {
     if (observation.camera == 0) ids.insert(observation.id);
   }
   int shared = 0;
-  for (const FeatureObservation& observation : buffer_[b].frame.observations) {
+  for (const FeatureObservation& observation : buffer_[b]->frame.observations) {
     if (observation.camera == 0 && ids.count(observation.id) > 0) ++shared;
   }
   return shared;
@@ -183,7 +183,7 @@ std::vector<Preintegration> Initializer::integrateBetween(const FrameIndices& ch
   std::vector<Preintegration> imu(chosen.size(), nothing);
   for (std::size_t i = 1; i < chosen.size(); ++i) {
     for (std::size_t k = chosen[i - 1] + 1; k <= chosen[i]; ++k) {
-      imu[i].integrate(buffer_[k].imu);
+      imu[i].integrate(buffer_[k]->imu);
     }
   }
   return imu;
@@ -196,7 +196,7 @@ std::vector<StructureFrame> Initializer::structureFrames(
   Eigen::Quaterniond R_b0_b = Eigen::Quaterniond::Identity();
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     R_b0_b = (R_b0_b * imu[i].gamma()).normalized();
-    frames.push_back({&buffer_[chosen[i]].frame, R_bc.conjugate() * R_b0_b * R_bc});
+    frames.push_back({&buffer_[chosen[i]]->frame, R_bc.conjugate() * R_b0_b * R_bc});
   }
   return frames;
 }
@@ -226,9 +226,9 @@ Initialization Initializer::toInitialization(const FrameIndices& chosen,
   initialization.sigma.segment<3>(kAccBias).setConstant(joint.accelerometer_bias_sigma);
   initialization.sigma.segment<3>(kGyrBias).setConstant(joint.gyroscope_bias_sigma);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    initialization.frames.push_back({buffer_[chosen[i]].frame, alignment.solution.states[i],
+    initialization.frames.push_back({buffer_[chosen[i]]->frame, alignment.solution.states[i],
                                      alignment.solution.imu[i],
-                                     buffer_[chosen[i]].imu.back().angular_velocity});
+                                     buffer_[chosen[i]]->imu.back().angular_velocity});
   }
   return initialization;
 }

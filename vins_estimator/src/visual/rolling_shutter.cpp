@@ -47,4 +47,10 @@ FeatureFrame atFirstRow(const FeatureFrame& frame, const RollingShutter& shutter
   return result;
 }
 
+Eigen::Vector3d meanRate(const std::vector<ImuSample>& samples) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const ImuSample& sample : samples) sum += sample.angular_velocity;
+  return samples.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(samples.size()));
+}
+
 }  // namespace vins::estimator

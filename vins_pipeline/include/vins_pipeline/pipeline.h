@@ -110,7 +110,7 @@ class Pipeline {
   estimator::Estimator estimator_;
   std::unique_ptr<pose_graph::PoseGraph> pose_graph_;
   bool refines_loops_;
-  pose_graph::RecentImages recent_images_;
+  pose_graph::RecentImages<cv::Mat> recent_images_;
   std::optional<pose_graph::PictureStore> pictures_;  ///< where save_image wants them
   std::optional<pose_graph::LoadedMap> loaded_map_;
   feature_tracker::GyroscopeBuffer gyroscope_;  ///< not yet handed to the tracker

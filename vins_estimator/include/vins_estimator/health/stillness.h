@@ -7,6 +7,7 @@
 
 #include "vins_core/feature_frame.h"
 #include "vins_core/imu.h"
+#include "vins_estimator/inertial/measurement_queue.h"
 
 namespace vins::estimator {
 
@@ -62,9 +63,9 @@ class StillnessDetector {
   /// Throws InputError for options that are out of range.
   explicit StillnessDetector(const StillnessOptions& options);
 
-  /// Takes a frame and the samples since the frame before; true if the last `window` seconds were
-  /// still.
-  bool addFrame(const FeatureFrame& frame, const std::vector<ImuSample>& imu);
+  /// Takes a frame with the samples since the frame before, which it keeps for as long as it needs
+  /// them; true if the last `window` seconds were still.
+  bool addFrame(SharedMeasurements measurements);
 
   /// Of the last addFrame().
   bool isStill() const { return still_; }
@@ -74,14 +75,10 @@ class StillnessDetector {
   void clear();
 
  private:
-  struct Entry {
-    FeatureFrame frame;
-    std::vector<ImuSample> imu;
-  };
   bool spansWindow() const;
 
   StillnessOptions options_;
-  std::deque<Entry> entries_;
+  std::deque<SharedMeasurements> entries_;  ///< oldest first
   ImuStillness imu_;
   ImageStillness images_;
   bool still_ = false;

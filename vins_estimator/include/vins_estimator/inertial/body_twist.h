@@ -1,7 +1,10 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
+#include "vins_core/imu.h"
 #include "vins_core/pose.h"
 #include "vins_estimator/inertial/nav_state.h"
 
@@ -20,5 +23,11 @@ struct BodyTwist {
 /// and R_wb together make it, the rate as the reading and the bias do.
 BodyTwist bodyTwist(const NavState& state, const Matrix15d& covariance,
                     const Eigen::Vector3d& angular_velocity_b, double angular_velocity_variance);
+
+/// Variance of the white noise in the last of an interval's gyroscope readings, per axis
+/// [rad^2/s^2]. Where that was interpolated between two samples, `period` [s] apart, the noise of
+/// both is averaged in it.
+double newestRateVariance(const std::vector<ImuSample>& samples, double period,
+                          const ImuNoise& noise);
 
 }  // namespace vins::estimator

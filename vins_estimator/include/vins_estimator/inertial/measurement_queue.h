@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,6 +46,9 @@ struct FrameMeasurements {
   bool restarted = false;    ///< stamps have jumped back: forget what was before
 };
 
+/// Kept by all that look back over several frames, without a copy of the observations.
+using SharedMeasurements = std::shared_ptr<const FrameMeasurements>;
+
 /// Pairs feature frames with the IMU samples between them, t_imu = t_cam + td. Puts right what the
 /// world does to them: samples that are not finite, double or out of order, gaps, frames before the
 /// first sample, repeated frames, restarted recordings. Each is told by an event: imu_disorder,
@@ -54,7 +58,7 @@ class MeasurementQueue {
   explicit MeasurementQueue(const MeasurementQueueOptions& options = {});
 
   void addImu(const ImuSample& sample);
-  void addFrame(const FeatureFrame& frame);
+  void addFrame(FeatureFrame frame);
 
   /// The oldest frame whose samples have all come, up to `readout` [s] after it. `td` [s] may
   /// change a little from call to call: an interval begins where the one before has ended.

@@ -58,11 +58,11 @@ class Initializer {
   /// them. Frames that do not follow the ones before (first of a recording, hole in the IMU) begin
   /// anew. After a start at rest it has forgotten all measurements; those of a moving start stay.
   /// `may_move`: false where only a start at rest is wanted.
-  std::optional<Initialization> addFrame(const FrameMeasurements& measurements,
+  std::optional<Initialization> addFrame(const SharedMeasurements& measurements,
                                          bool may_move = true);
 
   /// After a moving start: takes the next frame without looking for a start.
-  void remember(const FrameMeasurements& measurements);
+  void remember(const SharedMeasurements& measurements);
 
   /// Solves the moving start again with all frames that are remembered, the newest one included.
   std::optional<Initialization> solveAgain();
@@ -92,14 +92,14 @@ class Initializer {
   std::vector<StructureFrame> structureFrames(const FrameIndices& chosen,
                                               const std::vector<Preintegration>& imu) const;
   Initialization toInitialization(const FrameIndices& chosen, const Alignment& alignment) const;
-  void push(const FrameMeasurements& measurements);
+  void push(const SharedMeasurements& measurements);
   void forgetOld();
   void report(Stamp stamp);
   double bufferedSpan() const;
 
   InitializerOptions options_;
   StillnessDetector stillness_;
-  std::deque<FrameMeasurements> buffer_;
+  std::deque<SharedMeasurements> buffer_;
   int frames_until_attempt_;
   WaitingReason reason_;  ///< of the last attempt that failed, until it is told
   std::optional<Stamp> last_report_;

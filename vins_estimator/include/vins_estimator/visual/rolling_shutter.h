@@ -29,4 +29,7 @@ struct RollingShutter {
 FeatureFrame atFirstRow(const FeatureFrame& frame, const RollingShutter& shutter,
                         const std::vector<ImuSample>& gyro, const Eigen::Vector3d& mean_rate_b);
 
+/// Mean angular velocity of the samples [rad/s]; zero without any.
+Eigen::Vector3d meanRate(const std::vector<ImuSample>& samples);
+
 }  // namespace vins::estimator
