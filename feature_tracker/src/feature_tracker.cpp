@@ -9,7 +9,6 @@
 #include "feature_tracker/flow_prediction.h"
 #include "feature_tracker/frame_clock.h"
 #include "feature_tracker/image_equalizer.h"
-#include "feature_tracker/image_noise.h"
 #include "feature_tracker/optical_flow.h"
 #include "feature_tracker/outlier_rejection.h"
 #include "feature_tracker/stereo_matcher.h"
@@ -311,8 +310,8 @@ void FeatureTracker::Impl::rejectWanderers() {
 void FeatureTracker::Impl::addCorners(TrackerStatistics* statistics) {
   table_.thinOut(kCrowded * options_.min_distance);
   table_.pixels(&pixels_);
-  const std::vector<Corner> corners = grid_.detect(current_.gradients(), pixels_, shunned_.pixels(),
-                                                   noiseDeviation(current_.image()));
+  const std::vector<Corner> corners =
+      grid_.detect(current_.gradients(), pixels_, shunned_.pixels(), current_.noise());
   statistics->detected = table_.add(current_.image(), corners);
   table_.remember(memory_.image());
 }

@@ -5,17 +5,26 @@
 
 #include <opencv2/video/tracking.hpp>
 
+#include "feature_tracker/image_noise.h"
+
 namespace vins::feature_tracker {
 namespace {
 
-// Mean squared gradient in the weakest direction below which a patch cannot be followed, in the
-// unit of cv::calcOpticalFlowPyrLK(): grey values are scaled there by 1 / 32.
-constexpr double kFlatPatch = 5e-5;
+// Root mean square gradient in the weakest direction below which a patch cannot be followed
+// [grey values/px]: that of the image's noise, by its deviation, and never more than this.
+constexpr double kFlatByNoise = 0.4;
+constexpr double kFlat = 0.72;
 constexpr int kWayBackLevels = 0;
 constexpr float kDarkest = 8.0F;  // grey value below which a ratio says nothing
 
 cv::TermCriteria criteriaOf(const OpticalFlowOptions& options) {
   return {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, options.iterations, options.step};
+}
+
+/// The same in the unit of cv::calcOpticalFlowPyrLK(): mean square, grey values scaled by 1 / 32.
+double flatness(double noise) {
+  const double gradient = std::min(kFlat, kFlatByNoise * noise);
+  return gradient * gradient / (32.0 * 32.0);
 }
 
 }  // namespace
@@ -26,6 +35,7 @@ void ImagePyramid::build(const cv::Mat& image, const OpticalFlowOptions& options
   cv::buildOpticalFlowPyramid(image, levels_, cv::Size(options.window, options.window),
                               options.levels - 1, kWithGradients, cv::BORDER_REFLECT_101,
                               cv::BORDER_CONSTANT, kUseInputImage);
+  noise_ = noiseDeviation(image);
 }
 
 double ImagePyramid::coarseScale() const {
@@ -47,7 +57,8 @@ void OpticalFlow::trackThere(const ImagePyramid& from, const ImagePyramid& to,
                              std::vector<cv::Point2f>* tracked, std::vector<std::uint8_t>* found) {
   cv::calcOpticalFlowPyrLK(from.levels(), to.levels(), points, *tracked, *found, residuals_,
                            cv::Size(options_.window, options_.window), options_.levels - 1,
-                           criteriaOf(options_), cv::OPTFLOW_USE_INITIAL_FLOW, kFlatPatch);
+                           criteriaOf(options_), cv::OPTFLOW_USE_INITIAL_FLOW,
+                           flatness(from.noise()));
 }
 
 void OpticalFlow::checkWayBack(const ImagePyramid& from, const ImagePyramid& to,
@@ -57,7 +68,8 @@ void OpticalFlow::checkWayBack(const ImagePyramid& from, const ImagePyramid& to,
   back_ = points;
   cv::calcOpticalFlowPyrLK(to.levels(), from.levels(), tracked, back_, found_back_, residuals_,
                            cv::Size(options_.window, options_.window), kWayBackLevels,
-                           criteriaOf(options_), cv::OPTFLOW_USE_INITIAL_FLOW, kFlatPatch);
+                           criteriaOf(options_), cv::OPTFLOW_USE_INITIAL_FLOW,
+                           flatness(to.noise()));
   const double limit = options_.backward_tolerance * options_.backward_tolerance;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const cv::Point2f error = back_[i] - points[i];

@@ -109,6 +109,53 @@ TEST(CornerGrid, LeavesBlankPlacesAloneForThreeImages) {
   EXPECT_GE(smallestDistance(pixels), 30.0);
 }
 
+TEST(CornerGrid, FindsNextToNothingInNoise) {
+  cv::Mat1f noise(480, 752);
+  cv::RNG random(3);
+  random.fill(noise, cv::RNG::NORMAL, 120.0, 1.2);
+  cv::Mat image;
+  noise.convertTo(image, CV_8U);
+  ImagePyramid pyramid;
+  pyramid.build(image, {});
+  CornerGrid grid(kSize, {}, {});
+  EXPECT_LT(grid.detect(pyramid.gradients(), {}, {}, pyramid.noise()).size(), 3U);
+}
+
+TEST(CornerGrid, FindsFaintCornersWhereTheImageHasNoNoise) {
+  cv::Mat image;
+  texturedPyramid().image().convertTo(image, CV_8U, 0.06, 110.0);
+  ImagePyramid pyramid;
+  pyramid.build(image, {});
+  CornerGrid grid(kSize, {}, {});
+  EXPECT_GT(grid.detect(pyramid.gradients(), {}, {}, pyramid.noise()).size(), 50U);
+  CornerGrid blind(kSize, {}, {});
+  EXPECT_LT(blind.detect(pyramid.gradients(), {}).size(), 10U) << "by corner_quality alone";
+}
+
+TEST(CornerGrid, TakesShunnedPlacesOnlyWhereCornersAreFew) {
+  const ImagePyramid full = texturedPyramid();
+  const cv::Point2f shunned(560.0F, 240.0F);
+  const auto is_near = [&](const Corner& corner) {
+    return cv::norm(corner.pixel - shunned) < 30.0;
+  };
+  CornerGrid rich(kSize, {}, {});
+  const auto many = rich.detect(full.gradients(), {}, {shunned});
+  ASSERT_GE(many.size(), 100U);
+  EXPECT_TRUE(std::none_of(many.begin(), many.end(), is_near));
+  // Only the shunned place and another one show anything.
+  cv::Mat image(480, 752, CV_8U, cv::Scalar(100));
+  const cv::Rect seen(540, 220, 40, 40), other(100, 100, 40, 40);
+  full.image()(other).copyTo(image(other));
+  full.image()(seen).copyTo(image(seen));
+  ImagePyramid few;
+  few.build(image, {});
+  CornerGrid poor(kSize, {}, {});
+  const auto corners = poor.detect(few.gradients(), {}, {shunned});
+  EXPECT_TRUE(std::any_of(corners.begin(), corners.end(), is_near));
+  ASSERT_FALSE(corners.empty());
+  EXPECT_FALSE(is_near(corners.front())) << "they come last";
+}
+
 TEST(CornerGrid, FindsNothingWhereThereIsNothing) {
   ImagePyramid pyramid;
   pyramid.build(cv::Mat(480, 752, CV_8U, cv::Scalar(128)), {});

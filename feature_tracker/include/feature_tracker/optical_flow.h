@@ -35,11 +35,15 @@ class ImagePyramid {
   const cv::Mat& coarsest() const { return levels_[levels_.size() - 2]; }
   double coarseScale() const;
 
+  /// Deviation of the image's noise [grey values]; see noiseDeviation().
+  double noise() const { return noise_; }
+
   /// Image and gradients in turn, as cv::calcOpticalFlowPyrLK() takes them.
   const std::vector<cv::Mat>& levels() const { return levels_; }
 
  private:
   std::vector<cv::Mat> levels_;
+  double noise_ = 0.0;
 };
 
 /// Follows points from one image to another by the pyramidal method of Lucas and Kanade (J.-Y.
