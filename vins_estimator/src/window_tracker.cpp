@@ -184,7 +184,8 @@ void WindowTracker::slide(std::uint32_t sequence, EstimatorResult* result) {
   makeKeyframe(second, sequence, result);
   if (window_.frames.size() <= static_cast<std::size_t>(options_.window_size)) return;
   WallClock watch;
-  result->left.push_back(poseUpdateOf(window_.frames.front(), sequence));
+  const WindowFrame& leaving = window_.frames.front();
+  if (leaving.keyframe_id >= 0) result->left.push_back(poseUpdateOf(leaving, sequence));
   forgetLeavingLoop(&window_);
   marginalizeOldest(WindowSolverOptions{}.huber, &window_);
   result->statistics.marginalize_seconds = watch.lap();
@@ -210,6 +211,12 @@ bool WindowTracker::isKeyframeAt(std::size_t index) const {
 
 void WindowTracker::makeKeyframe(std::size_t index, std::uint32_t sequence,
                                  EstimatorResult* result) {
+  // A window that begins anew within a sequence has frames of a time that keyframes cover already.
+  const Stamp stamp = window_.frames[index].stamp;
+  if (last_keyframe_ && last_keyframe_->sequence == sequence && stamp <= last_keyframe_->stamp) {
+    return;
+  }
+  last_keyframe_ = {stamp, sequence};
   window_.frames[index].keyframe_id = next_keyframe_id_++;
   result->keyframes.push_back(keyframeOf(window_, index, sequence));
 }

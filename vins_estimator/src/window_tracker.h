@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "vins_core/loop_match.h"
 #include "vins_estimator/estimator.h"
@@ -61,7 +62,12 @@ class WindowTracker {
   SlidingWindow window_;
   FrameId next_frame_id_ = 0;
   std::int64_t next_keyframe_id_ = 0;
-  bool motion_only_ = false;  ///< of the last adjustment
+  struct LastKeyframe {
+    Stamp stamp = 0;
+    std::uint32_t sequence = 0;
+  };
+  std::optional<LastKeyframe> last_keyframe_;  ///< that was handed out
+  bool motion_only_ = false;                   ///< of the last adjustment
   bool loop_is_new_ = false;
 };
 
