@@ -29,9 +29,6 @@ namespace {
 /// recognised on any machine that keeps up [s].
 constexpr double kLoopDelay = 0.15;
 
-/// Least deviation of a time offset that the search has found [s].
-constexpr double kLeastTimeSigma = 3e-3;
-
 void moveEvents(std::vector<Event> events, EstimatorResult* result) {
   for (Event& event : events) result->events.push_back(std::move(event));
 }
@@ -193,6 +190,7 @@ class Estimator::Implementation {
     if (!found) return;
     time_offset_is_known_ = true;
     // Turns that parallax bends make the offset look better known than it is.
+    constexpr double kLeastTimeSigma = 3e-3;  // [s]
     const double sigma = std::max(kLeastTimeSigma, 2.0 * found->sigma);
     const bool is_new = std::abs(found->td - rig.td) > sigma;
     result->events.push_back({result->stamp,
@@ -283,13 +281,15 @@ class Estimator::Implementation {
     if (!convergence_.isDue(result->stamp)) return false;
     initializer_.setExtrinsic(tracker_.window().rig.T_bc);
     std::optional<Initialization> again = initializer_.solveAgain();
-    if (!again || !convergence_.take(again->scale_sigma)) return false;
+    if (!again) return false;
+    const double ratio = again->scale_sigma / *convergence_.scaleSigma();
+    if (!convergence_.take(again->scale_sigma)) return false;
     const WindowFrame& before = tracker_.window().frames.back();
     Preintegration imu(options_.imu, before.state.value().accelerometer_bias,
                        before.state.value().gyroscope_bias);
     imu.integrate(shared->imu);
     moveNewestTo(imu.predict(before.state.value(), tracker_.window().g_w), before.covariance,
-                 &*again);
+                 ratio * ratio, &*again);
     tracker_.clear();
     result->events.push_back({result->stamp,
                               Severity::kInfo,
@@ -314,6 +314,8 @@ class Estimator::Implementation {
 
   bool usesMotionOnly() const {
     constexpr int kBehind = 3;  // frames
+    // While the scale converges every frame must be able to move the whole window.
+    if (convergence_.scaleSigma()) return false;
     if (options_.motion_only == MotionOnly::kWhenBehind) return backlog_ >= kBehind;
     return options_.motion_only == MotionOnly::kAlways;
   }

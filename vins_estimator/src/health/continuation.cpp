@@ -93,12 +93,14 @@ void Continuation::apply(Initialization* initialization) const {
   addDoubt(last.position_sigma, last.yaw_sigma, initialization);
 }
 
-void moveNewestTo(const NavState& newest, const Matrix15d& covariance,
+void moveNewestTo(const NavState& newest, const Matrix15d& covariance, double share,
                   Initialization* initialization) {
   if (initialization->frames.empty()) return;
   moveAll(NavState(initialization->frames.back().state), newest, initialization);
+  const double rest = std::sqrt(std::max(0.0, 1.0 - share));
   const double position_sigma = std::sqrt(covariance.diagonal().head<3>().maxCoeff());
-  addDoubt(position_sigma, yawSigma(newest.T_wb.rotation, covariance), initialization);
+  addDoubt(rest * position_sigma, rest * yawSigma(newest.T_wb.rotation, covariance),
+           initialization);
 }
 
 }  // namespace vins::estimator

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -134,20 +133,6 @@ void TurnCalibrator::restartAt(const FrameMeasurements& measurements) {
   duration_ = 0.0;
 }
 
-std::vector<BearingPair> TurnCalibrator::sharedWith(const FeatureFrame& frame) const {
-  std::unordered_map<std::int64_t, const FeatureObservation*> first;
-  for (const FeatureObservation& o : reference_->observations) {
-    if (o.camera == 0) first.emplace(o.id, &o);
-  }
-  std::vector<BearingPair> pairs;
-  for (const FeatureObservation& o : frame.observations) {
-    const auto it = first.find(o.id);
-    if (o.camera != 0 || it == first.end()) continue;
-    pairs.push_back({it->second->bearing, o.bearing, options_.pixel_noise * o.angular_resolution});
-  }
-  return pairs;
-}
-
 void TurnCalibrator::integrate(const std::vector<ImuSample>& samples) {
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double dt = toSeconds(samples[i].stamp - samples[i - 1].stamp);
@@ -182,7 +167,8 @@ std::optional<TurnCalibration> TurnCalibrator::addFrame(const FrameMeasurements&
     return std::nullopt;
   }
   integrate(measurements.imu);
-  const std::vector<BearingPair> shared = sharedWith(measurements.frame);
+  const std::vector<BearingPair> shared =
+      sharedBearings(*reference_, measurements.frame, options_.pixel_noise);
   const bool is_connected = static_cast<int>(shared.size()) >= options_.min_shared;
   const bool has_turned = so3::log(turn_b_).norm() >= options_.min_turn;
   if (is_connected && has_turned) compare(measurements, shared, td);

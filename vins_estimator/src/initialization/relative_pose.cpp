@@ -6,6 +6,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <unordered_map>
 
 #include <Eigen/Cholesky>
 #include <Eigen/SVD>
@@ -241,6 +242,21 @@ std::vector<RelativePose> Ransac::run() {
 }
 
 }  // namespace
+
+std::vector<BearingPair> sharedBearings(const FeatureFrame& first, const FeatureFrame& second,
+                                        double pixel_noise) {
+  std::unordered_map<std::int64_t, const FeatureObservation*> by_id;
+  for (const FeatureObservation& o : first.observations) {
+    if (o.camera == 0) by_id.emplace(o.id, &o);
+  }
+  std::vector<BearingPair> pairs;
+  for (const FeatureObservation& o : second.observations) {
+    const auto it = by_id.find(o.id);
+    if (o.camera != 0 || it == by_id.end()) continue;
+    pairs.push_back({it->second->bearing, o.bearing, pixel_noise * o.angular_resolution});
+  }
+  return pairs;
+}
 
 void RelativePoseOptions::validate() const {
   requirePositive("relative pose", "inlier_gate", inlier_gate);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 #include "vins_core/so3.h"
 #include "vins_estimator/initialization/relative_pose.h"
@@ -20,20 +19,6 @@ constexpr double kOutlier = 0.02;     // residual of a turn whose weight is a qu
 double robustSquare(double square) {
   constexpr double kScale = kOutlier * kOutlier;
   return square * kScale / (kScale + square);
-}
-
-std::vector<BearingPair> sharedFeatures(const FeatureFrame& first, const FeatureFrame& second) {
-  std::unordered_map<std::int64_t, const FeatureObservation*> by_id;
-  for (const FeatureObservation& o : first.observations) {
-    if (o.camera == 0) by_id.emplace(o.id, &o);
-  }
-  std::vector<BearingPair> pairs;
-  for (const FeatureObservation& o : second.observations) {
-    const auto it = by_id.find(o.id);
-    if (o.camera != 0 || it == by_id.end()) continue;
-    pairs.push_back({it->second->bearing, o.bearing, o.angular_resolution});
-  }
-  return pairs;
 }
 
 }  // namespace
@@ -72,7 +57,7 @@ void TimeOffsetSearch::addSamples(const std::vector<ImuSample>& samples) {
 
 void TimeOffsetSearch::addTurn(const FeatureFrame& frame) {
   if (!last_frame_ || toSeconds(frame.stamp - last_frame_->stamp) > kLongestPair) return;
-  const std::vector<BearingPair> shared = sharedFeatures(*last_frame_, frame);
+  const std::vector<BearingPair> shared = sharedBearings(*last_frame_, frame, 1.0);
   if (static_cast<int>(shared.size()) < options_.min_shared) return;
   const Eigen::Quaterniond R_12 = fitRotation(shared, Eigen::Quaterniond::Identity());
   turns_.push_back({last_frame_->stamp, frame.stamp, so3::log(R_12)});

@@ -46,8 +46,9 @@ class Continuation {
 };
 
 /// Moves new first states so that the newest of them stands where `newest` does, by position and
-/// yaw, with deviations by its `covariance`.
-void moveNewestTo(const NavState& newest, const Matrix15d& covariance,
+/// yaw. It is then as uncertain as `covariance` says: what the new states' own measurements make of
+/// it, and a doubt about where they begin for the rest. `share`: of the variance that is the former.
+void moveNewestTo(const NavState& newest, const Matrix15d& covariance, double share,
                   Initialization* initialization);
 
 }  // namespace vins::estimator

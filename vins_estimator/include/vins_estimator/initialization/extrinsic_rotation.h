@@ -85,7 +85,6 @@ class TurnCalibrator {
   void clear();
 
  private:
-  std::vector<BearingPair> sharedWith(const FeatureFrame& frame) const;
   void integrate(const std::vector<ImuSample>& samples);
   void compare(const FrameMeasurements& measurements, const std::vector<BearingPair>& shared,
                double td);

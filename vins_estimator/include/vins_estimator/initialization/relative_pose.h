@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "vins_core/feature_frame.h"
 #include "vins_core/pose.h"
 
 namespace vins::estimator {
@@ -16,6 +17,11 @@ struct BearingPair {
   Eigen::Vector3d second = Eigen::Vector3d::UnitZ();  ///< unit, in the second
   double sigma = 1.0 / 460.0;                         ///< of either, per axis [rad]
 };
+
+/// The bearings of the features that both frames' first cameras see, in the second frame's order.
+/// `pixel_noise`: deviation of a corner per axis [px].
+std::vector<BearingPair> sharedBearings(const FeatureFrame& first, const FeatureFrame& second,
+                                        double pixel_noise);
 
 struct RelativePoseOptions {
   double inlier_gate = 3.0;   ///< distance from the epipolar plane [deviations]
