@@ -105,6 +105,7 @@ NavState WindowTracker::append(const FrameMeasurements& measurements, bool stand
   frame.stands_still = stands_still;
   frame.has_rested = has_rested;
   frame.td = window_.rig.td;
+  frame.interval = toSeconds(frame.stamp - before.stamp);
   if (!measurements.imu.empty()) {
     frame.measured_rate = measurements.imu.back().angular_velocity;
   }
@@ -194,6 +195,7 @@ void WindowTracker::slide(std::uint32_t sequence, EstimatorResult* result) {
 bool WindowTracker::isKeyframeAt(std::size_t index) const {
   const WindowFrame& frame = window_.frames[index];
   const WindowFrame& last = window_.frames[index - 1];
+  if (isStampDoubtful(frame.interval, window_.frames[index + 1].interval)) return false;
   const Eigen::Quaterniond R_bc = window_.rig.T_bc.rotation;
   const Eigen::Quaterniond R_frame_last = R_bc.conjugate() *
                                           frame.state.value().T_wb.rotation.conjugate() *

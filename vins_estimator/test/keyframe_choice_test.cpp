@@ -138,5 +138,13 @@ TEST(RestingChoice, MakesKeyframesRareButForMotion) {
   EXPECT_TRUE(isKept(19, 0.0, 120, 0.5, resting)) << "as does a view that is lost";
 }
 
+TEST(KeyframeChoice, DoubtsTheStampOfAnImageThatItsSuccessorFollowsAtOnce) {
+  EXPECT_TRUE(isStampDoubtful(0.0985, 0.0015));
+  EXPECT_TRUE(isStampDoubtful(0.05, 0.002));
+  EXPECT_FALSE(isStampDoubtful(0.05, 0.05));
+  EXPECT_FALSE(isStampDoubtful(0.1, 0.033)) << "images that were lost on the way";
+  EXPECT_FALSE(isStampDoubtful(0.0, 0.05)) << "of the first frames it is not known";
+}
+
 }  // namespace
 }  // namespace vins::estimator

@@ -33,4 +33,9 @@ bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& again
   return against_last.shared < min_shared || against_last.parallax >= options.min_parallax;
 }
 
+bool isStampDoubtful(double before, double after) {
+  constexpr double kShare = 0.1;  // cameras that skip nine images of ten are not met
+  return after < kShare * before;
+}
+
 }  // namespace vins::estimator

@@ -35,4 +35,9 @@ KeyframeChoiceOptions restingChoice(KeyframeChoiceOptions moving);
 bool isKeyframe(const KeyframeChoiceOptions& options, const FrameParallax& against_last, int tracks,
                 double seconds);
 
+/// Tells whether the stamp of an image is in doubt, `before` seconds after its predecessor and
+/// `after` seconds before its successor: two images that arrived together were stamped together
+/// then, and the first shows what was before. Such a frame contradicts the IMU and may not stay.
+bool isStampDoubtful(double before, double after);
+
 }  // namespace vins::estimator

@@ -29,6 +29,7 @@ struct WindowFrame {
   bool stands_still = false;      ///< images and IMU say so
   bool has_rested = false;        ///< since the frame before it in the window
   double td = 0.0;                ///< with which it was timed [s]
+  double interval = 0.0;          ///< since the image before it, 0: not known [s]
   Eigen::Vector3d measured_rate = Eigen::Vector3d::Zero();  ///< of the gyroscope, then [rad/s]
   Matrix15d covariance = Matrix15d::Zero();                 ///< of its state when it was the newest
 };
