@@ -85,18 +85,31 @@ TEST(EstimatorStudy, RestsWithoutDrift) {
   EXPECT_LT(widest, 0.1 * kDegree);
 }
 
-TEST(EstimatorStudy, InventsNoPositionWhileTheRigOnlyTurns) {
-  const OdometryRun run = runOdometry(flight("pure_rotation", 30.0), 1);
-  ASSERT_FALSE(run.samples.empty());
+/// Largest distance from the first position in the fifteen seconds of turning that a flight of
+/// pure_rotation begins with [m].
+double wanderingWhileTurning(const OdometryRun& run) {
+  double furthest = 0.0;
   for (const OdometrySample& sample : run.samples) {
-    // Nothing, or what is true: fifteen seconds of turning, then it flies.
     if (toSeconds(sample.estimate.stamp - run.begin) > 15.0) break;
-    EXPECT_LT(
-        (sample.estimate.state.T_wb.position - run.samples.front().estimate.state.T_wb.position)
-            .norm(),
-        0.1);
+    const Pose moved =
+        run.samples.front().estimate.state.T_wb.inverse() * sample.estimate.state.T_wb;
+    const Pose truth = run.samples.front().truth.T_wb.inverse() * sample.truth.T_wb;
+    furthest = std::max(furthest, (moved.position - truth.position).norm());
   }
-  EXPECT_LT(std::abs(evaluate(run).scale_error), 0.02);
+  return furthest;
+}
+
+TEST(EstimatorStudy, InventsNoPositionWhileTheRigOnlyTurns) {
+  int turned = 0;
+  for (const std::uint64_t seed : {1, 2, 4, 5}) {
+    const OdometryRun run = runOdometry(flight("pure_rotation", 30.0), seed);
+    ASSERT_FALSE(run.samples.empty());
+    // It may start later: without translation only a rest tells the velocity.
+    turned += toSeconds(run.samples.front().estimate.stamp - run.begin) < 2.0;
+    EXPECT_LT(wanderingWhileTurning(run), 0.05) << "seed " << seed;
+    EXPECT_LT(std::abs(evaluate(run).scale_error), 0.02) << "seed " << seed;
+  }
+  EXPECT_GE(turned, 2) << "too few flights show it";
 }
 
 TEST(EstimatorStudy, MotionOnlyAdjustmentIsNearlyAsGood) {
