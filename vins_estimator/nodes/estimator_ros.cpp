@@ -49,7 +49,7 @@ auto tryFromMsg(const Message& message) -> std::optional<decltype(vins_msgs::fro
 }  // namespace
 
 EstimatorRos::EstimatorRos(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
-    : EstimatorRos(node, private_node, vins_msgs::loadConfiguration(private_node)) {}
+    : EstimatorRos(node, private_node, vins_msgs::loadConfiguration(node, private_node)) {}
 
 EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
                            const vins_msgs::NodeConfiguration& configuration)

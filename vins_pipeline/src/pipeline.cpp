@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "camera_model/rig.h"
 #include "feature_tracker/mask_file.h"
 #include "vins_core/input_error.h"
 
@@ -52,9 +51,10 @@ void addPart(const char* stage, double seconds, PipelineResult* result) {
 
 }  // namespace
 
-PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings) {
+PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings,
+                                    const camera_model::CameraInfoReader& read_camera_info) {
   const Parameters parameters = Parameters::load(path);
-  const camera_model::Rig rig = camera_model::readRig(parameters);
+  const camera_model::Rig rig = camera_model::readRig(parameters, read_camera_info);
   const camera_model::RigCamera& camera = rig.cameras.front();
   PipelineOptions options;
   options.cameras = {camera.camera};
@@ -65,6 +65,7 @@ PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::st
   std::vector<std::string> remarks = rig.warnings;
   options.imu_topic = recordedTopic(rig.imu.topic, options.imu_topic, &remarks);
   options.image_topics[0] = recordedTopic(camera.image_topic, options.image_topics[0], &remarks);
+  if (!camera.is_from_topic) options.camera_info_topic = camera.camera_info_topic;
   options.loops = pose_graph::readPoseGraphConfiguration(parameters);
   if (options.loops.is_on && options.loops.loads_map) options.map = options.loops.map_file;
   // Of VINS-Mono, and of no meaning here.

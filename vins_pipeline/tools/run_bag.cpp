@@ -14,6 +14,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/core.hpp>
 
+#include "camera_model/opencv_intrinsics.h"
 #include "run_maps.h"
 #include "support_files.h"
 #include "track_picture.h"
@@ -66,10 +67,29 @@ vins::pipeline::RecordingSelection selectionOf(const po::variables_map& values,
   return selection;
 }
 
+/// What camera_info_topic says against the file; empty where they agree.
+std::string compareWithCameraInfo(const std::string& bag,
+                                  const vins::pipeline::PipelineOptions& options) {
+  const std::string& topic = options.camera_info_topic;
+  if (topic.empty()) return "";
+  try {
+    const auto camera = vins::pipeline::readCameraInfo(bag, topic);
+    return vins::camera_model::describeDifference(*options.cameras.front(), *camera, topic)
+        .value_or("");
+  } catch (const vins::InputError& error) {
+    return error.what();  // the file's camera is enough
+  }
+}
+
 vins::pipeline::PipelineOptions readConfig(const po::variables_map& values) {
   const std::string path = values["config"].as<std::string>();
+  const std::string bag = values["bag"].as<std::string>();
   std::vector<std::string> warnings;
-  vins::pipeline::PipelineOptions options = vins::pipeline::readPipelineOptions(path, &warnings);
+  vins::pipeline::PipelineOptions options = vins::pipeline::readPipelineOptions(
+      path, &warnings,
+      [&bag](const std::string& topic) { return vins::pipeline::readCameraInfo(bag, topic); });
+  const std::string difference = compareWithCameraInfo(bag, options);
+  if (!difference.empty()) warnings.push_back(difference);
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
   // The result must not depend on the computer's speed.
   options.estimator.max_solver_time = 0.0;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "camera_model/camera.h"
 #include "vins_pipeline/recording.h"
 
 namespace vins::pipeline {
@@ -16,6 +17,13 @@ namespace vins::pipeline {
 /// topics that it has), and for a span that holds nothing.
 std::unique_ptr<Recording> openBagRecording(const std::string& path,
                                             const RecordingSelection& selection);
+
+/// The camera that the first message of a topic of sensor_msgs/CameraInfo in a bag describes.
+/// Throws InputError naming bag and topic: where `path` is no bag, where the topic is missing or of
+/// another type, and for a message that describes no camera. Names in a bag are absolute: a '/' at
+/// the start of `topic` may be left out.
+std::unique_ptr<camera_model::Camera> readCameraInfo(const std::string& path,
+                                                     const std::string& topic);
 
 /// A bag, or a folder in the ASL layout. Throws InputError where `path` is neither.
 std::unique_ptr<Recording> openRecording(const std::string& path,

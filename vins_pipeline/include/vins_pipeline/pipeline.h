@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "camera_model/camera.h"
+#include "camera_model/rig.h"
 #include "feature_tracker/feature_tracker.h"
 #include "feature_tracker/gyroscope_buffer.h"
 #include "feature_tracker/tracker_options.h"
@@ -37,6 +38,7 @@ struct PipelineOptions {
   cv::Mat mask;  ///< CV_8UC1, 0 where no corner may be; or empty
   std::string imu_topic = "/imu0";
   std::vector<std::string> image_topics = {"/cam0/image_raw"};
+  std::string camera_info_topic;  ///< to compare the file's camera with; "" for none
   pose_graph::PoseGraphConfiguration loops;
   pose_graph::PlaceModel places;  ///< empty: no loop closing, whatever `loops` says
   std::string map;                ///< a map file to relocalise in; "" for none
@@ -44,7 +46,10 @@ struct PipelineOptions {
 
 /// Reads a rig's configuration file: camera, tracker, estimator, topics. Throws InputError naming
 /// file and key. `warnings`, which may be null, gets a line for each key that nothing asked for.
-PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings);
+/// `read_camera_info` gives the camera where the file leaves it to camera_info_topic.
+PipelineOptions readPipelineOptions(
+    const std::string& path, std::vector<std::string>* warnings,
+    const camera_model::CameraInfoReader& read_camera_info = nullptr);
 
 /// What came of one image.
 struct PipelineResult {
