@@ -200,9 +200,6 @@ class RigReader {
                            " cameras: odometry goes by the first; the feature tracker's node also "
                            "follows the second");
     }
-    if (!rig_.imu.accel_topic.empty()) {
-      main_.remark("accel_topic", "accel_topic is not subscribed yet");
-    }
   }
 
   /// Those of the keys that stages read stay unknown to the rig's reader only.

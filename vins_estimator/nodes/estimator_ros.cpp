@@ -62,6 +62,11 @@ EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
   diagnostics_.setHardwareID("visual-inertial rig");
   diagnostics_.add("estimator", this, &EstimatorRos::report);
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  if (!configuration.rig.imu.accel_topic.empty()) {
+    joiner_.emplace();
+    acceleration_ = node.subscribe(configuration.rig.imu.accel_topic, 2000,
+                                   &EstimatorRos::onAcceleration, this, no_delay);
+  }
   imu_ = node.subscribe(configuration.rig.imu.topic, 2000, &EstimatorRos::onImu, this, no_delay);
   features_ = node.subscribe(kFeatureTopic, 100, &EstimatorRos::onFeatures, this, no_delay);
   matches_ = node.subscribe("pose_graph/loop_match", 100, &EstimatorRos::onLoopMatch, this);
@@ -82,12 +87,43 @@ EstimatorRos::~EstimatorRos() {
 }
 
 void EstimatorRos::onImu(const sensor_msgs::Imu::ConstPtr& message) {
+  const std::optional<ImuSample> sample = tryFromMsg(*message);
+  if (!sample) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last_imu_ = ros::WallTime::now();
+  }
+  if (!joiner_) return takeSample(*sample);
+  const std::lock_guard<std::mutex> lock(joiner_mutex_);
+  joiner_->addGyroscope(sample->stamp, sample->angular_velocity);
+  takeJoinedSamples();
+}
+
+void EstimatorRos::onAcceleration(const sensor_msgs::Imu::ConstPtr& message) {
+  const std::optional<ImuSample> sample = tryFromMsg(*message);
+  if (!sample) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last_acceleration_ = ros::WallTime::now();
+  }
+  const std::lock_guard<std::mutex> lock(joiner_mutex_);
+  joiner_->addAccelerometer(sample->stamp, sample->acceleration);
+  takeJoinedSamples();
+}
+
+void EstimatorRos::takeJoinedSamples() {
+  while (const std::optional<ImuSample> sample = joiner_->next()) takeSample(*sample);
   Input input;
-  input.imu = tryFromMsg(*message);
-  if (!input.imu) return;
+  input.events = joiner_->takeEvents();
+  if (!input.events.empty()) push(std::move(input));
+}
+
+void EstimatorRos::takeSample(const ImuSample& sample) {
+  Input input;
+  input.imu = sample;
   {
     const std::lock_guard<std::mutex> lock(propagator_mutex_);
-    const std::optional<PropagatedState> state = propagator_.addImu(*input.imu);
+    const std::optional<PropagatedState> state = propagator_.addImu(sample);
     if (state) publisher_.publish(*state);
   }
   push(std::move(input));
@@ -127,7 +163,6 @@ bool EstimatorRos::onReset(std_srvs::Trigger::Request& /*request*/,
 void EstimatorRos::push(Input input) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (input.imu) last_imu_ = ros::WallTime::now();
     if (input.frame) {
       last_frame_ = ros::WallTime::now();
       // Falling behind for good: new frames are left out, the IMU goes on.
@@ -160,6 +195,7 @@ void EstimatorRos::work() {
 
 void EstimatorRos::handle(Input* input) {
   if (input->restart) restart();
+  if (!input->events.empty()) handle(input->events);
   if (input->imu) estimator_.addImu(*input->imu);
   if (input->match) estimator_.addLoopMatch(*input->match);
   if (input->frame) {
@@ -210,12 +246,20 @@ std::string EstimatorRos::missingInput() const {
     return "no IMU sample yet on " + imu_.getTopic() +
            ": does the IMU or the bag run, is imu_topic right? (rostopic hz)";
   }
+  if (joiner_ && last_acceleration_.isZero()) {
+    return "no accelerometer sample yet on " + acceleration_.getTopic() +
+           ": is accel_topic right, is the accelerometer switched on? (rostopic hz)";
+  }
   if (last_frame_.isZero()) {
     return "no features yet on " + features_.getTopic() + ": does feature_tracker run?";
   }
   if ((now - last_imu_).toSec() > kSilence) {
     return "IMU samples have stopped on " + imu_.getTopic() +
            ": has the bag ended, has the IMU's driver stopped?";
+  }
+  if (joiner_ && (now - last_acceleration_).toSec() > kSilence) {
+    return "accelerometer samples have stopped on " + acceleration_.getTopic() +
+           ": has the bag ended, has the driver stopped?";
   }
   if ((now - last_frame_).toSec() > kSilence) {
     return "features have stopped on " + features_.getTopic() +

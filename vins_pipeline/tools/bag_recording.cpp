@@ -106,6 +106,10 @@ class BagRecording : public Recording {
     types_ = typesOf(bag_);
     requireTopic(path, types_, selection.imu_topic, {kImu});
     std::vector<std::string> topics = {selection.imu_topic};
+    if (!selection.accel_topic.empty()) {
+      requireTopic(path, types_, selection.accel_topic, {kImu});
+      topics.push_back(selection.accel_topic);
+    }
     for (std::string& topic : selection_.image_topics) {
       if (types_.count(topic) == 0 && types_.count(topic + "/compressed") > 0) {
         topic += "/compressed";
@@ -135,7 +139,7 @@ class BagRecording : public Recording {
   }
 
  private:
-  using Data = std::variant<ImuSample, RecordedImage, RecordedTruth>;
+  using Data = decltype(Record::data);
 
   /// Reads all header stamps once, as far as the bag can be read.
   void index() {
@@ -158,7 +162,9 @@ class BagRecording : public Recording {
   }
 
   StampOrder::Stream streamOf(const std::string& topic) const {
-    if (topic == selection_.imu_topic) return StampOrder::Stream::kImu;
+    if (topic == selection_.imu_topic || topic == selection_.accel_topic) {
+      return StampOrder::Stream::kImu;
+    }
     return topic == truth_topic_ ? StampOrder::Stream::kTruth : StampOrder::Stream::kImage;
   }
 
@@ -202,6 +208,10 @@ class BagRecording : public Recording {
   Data dataOf(const rosbag::MessageInstance& instance) {
     const std::string& topic = instance.getTopic();
     if (topic == selection_.imu_topic) return vins_msgs::fromMsg(*read<sensor_msgs::Imu>(instance));
+    if (topic == selection_.accel_topic) {
+      const ImuSample sample = vins_msgs::fromMsg(*read<sensor_msgs::Imu>(instance));
+      return RecordedAcceleration{sample.stamp, sample.acceleration};
+    }
     if (topic == truth_topic_) return truthOf(instance);
     return imageOf(instance);
   }

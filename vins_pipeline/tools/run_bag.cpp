@@ -61,6 +61,7 @@ vins::pipeline::RecordingSelection selectionOf(const po::variables_map& values,
                                                const vins::pipeline::PipelineOptions& options) {
   vins::pipeline::RecordingSelection selection;
   selection.imu_topic = options.imu_topic;
+  selection.accel_topic = options.accel_topic;
   selection.image_topics = options.image_topics;
   selection.start = values["start"].as<double>();
   if (values.count("duration") > 0) selection.duration = values["duration"].as<double>();
@@ -136,11 +137,15 @@ void feedImage(const vins::pipeline::RecordedImage& image, vins::pipeline::Pipel
 }
 
 void feed(const vins::pipeline::Record& message, vins::pipeline::Pipeline* pipeline, Run* run) {
+  using vins::pipeline::RecordedAcceleration;
   if (const auto* sample = std::get_if<vins::ImuSample>(&message.data)) {
     run->inputs.addImu(sample->stamp);
     pipeline->addImu(*sample);
   } else if (const auto* truth = std::get_if<vins::pipeline::RecordedTruth>(&message.data)) {
     run->results.add(*truth);
+  } else if (const auto* reading = std::get_if<RecordedAcceleration>(&message.data)) {
+    run->inputs.addAcceleration(reading->stamp);
+    pipeline->addAcceleration(reading->stamp, reading->acceleration);
   } else {
     feedImage(std::get<vins::pipeline::RecordedImage>(message.data), pipeline, run);
   }
@@ -334,6 +339,8 @@ vins::ToolExit runBag(const po::variables_map& values) {
   if (!run.maps.file_to_save.empty() && !run.options.loops.is_on) {
     throw vins::InputError("--save-map: a map needs loop closing, which is off");
   }
+  // The ASL layout has both sensors in one file.
+  if (fs::is_directory(values["bag"].as<std::string>())) run.options.accel_topic.clear();
   run.recording = vins::pipeline::openRecording(values["bag"].as<std::string>(),
                                                 selectionOf(values, run.options));
   run.reached = run.recording->summary().begin;

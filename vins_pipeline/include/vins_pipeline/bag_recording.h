@@ -10,7 +10,8 @@ namespace vins::pipeline {
 
 /// A ROS bag. Images: sensor_msgs/Image (encodings of vins_msgs::ImageConverter) or
 /// CompressedImage; `topic`/compressed is read where `topic` itself is not in the bag. A damaged
-/// bag is read up to the damage, which the summary tells. IMU: sensor_msgs/Imu. Ground truth, if
+/// bag is read up to the damage, which the summary tells. IMU: sensor_msgs/Imu, where
+/// the accelerometer has a topic of its own on both. Ground truth, if
 /// there: PoseStamped, TransformStamped or PointStamped on /ground_truth/pose,
 /// /vicon/firefly_sbx/firefly_sbx or /leica/position, the first that is there. Throws InputError
 /// naming the bag: where it cannot be read, where a topic is missing or of a wrong type (naming the
