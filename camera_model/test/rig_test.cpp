@@ -50,43 +50,6 @@ void expectPose(const Pose& T_bc, const Eigen::Vector3d& place) {
 
 class RigOfFiles : public RigFiles {};
 
-/// The file without its camera, and with a topic that gives it.
-std::string withoutCamera(std::string text) {
-  text = replaced(text, "model_type:", "no_model_type:");
-  return text + "camera_info_topic: /left/camera_info/\n";
-}
-
-TEST(Rig, TakesTheIntrinsicsThatTheFileLacksFromCameraInfo) {
-  std::string asked;
-  const auto given = read(vinsMono()).cameras[0].camera;
-  const auto reader = [&](const std::string& topic) {
-    asked = topic;
-    return given;
-  };
-  const Rig rig = readRig(Parameters::parse(withoutCamera(vinsMono()), "rig.yaml"), reader);
-  EXPECT_EQ(asked, "/left/camera_info");
-  EXPECT_EQ(rig.cameras[0].camera, given);
-  EXPECT_TRUE(rig.cameras[0].is_from_topic);
-  expectPose(rig.cameras[0].T_bc, kPlace);
-}
-
-TEST(Rig, IntrinsicsOfTheFileGoBeforeCameraInfo) {
-  const auto reader = [](const std::string& /*topic*/) -> std::shared_ptr<const Camera> {
-    throw InputError("asked in vain");
-  };
-  const std::string text = vinsMono() + "camera_info_topic: /left/camera_info\n";
-  const Rig rig = readRig(Parameters::parse(text, "rig.yaml"), reader);
-  EXPECT_FALSE(rig.cameras[0].is_from_topic);
-  EXPECT_EQ(rig.cameras[0].camera_info_topic, "/left/camera_info");
-}
-
-TEST(Rig, ProgramsThatReadNoTopicNeedIntrinsicsInTheFile) {
-  EXPECT_TRUE(contains(errorOf(withoutCamera(vinsMono())),
-                       "'camera_info_topic': found '/left/camera_info' and no intrinsics in the "
-                       "file; allowed: the intrinsics in the file (model_type, ...)"))
-      << errorOf(withoutCamera(vinsMono()));
-}
-
 TEST(Rig, ReadsVinsMonosForm) {
   const Rig rig = read(vinsMono());
   ASSERT_EQ(rig.cameras.size(), 1u);

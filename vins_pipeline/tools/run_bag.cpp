@@ -14,7 +14,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/core.hpp>
 
-#include "camera_model/opencv_intrinsics.h"
+#include "recording_options.h"
 #include "run_maps.h"
 #include "support_files.h"
 #include "track_picture.h"
@@ -68,29 +68,10 @@ vins::pipeline::RecordingSelection selectionOf(const po::variables_map& values,
   return selection;
 }
 
-/// What camera_info_topic says against the file; empty where they agree.
-std::string compareWithCameraInfo(const std::string& bag,
-                                  const vins::pipeline::PipelineOptions& options) {
-  const std::string& topic = options.camera_info_topic;
-  if (topic.empty()) return "";
-  try {
-    const auto camera = vins::pipeline::readCameraInfo(bag, topic);
-    return vins::camera_model::describeDifference(*options.cameras.front(), *camera, topic)
-        .value_or("");
-  } catch (const vins::InputError& error) {
-    return error.what();  // the file's camera is enough
-  }
-}
-
 vins::pipeline::PipelineOptions readConfig(const po::variables_map& values) {
-  const std::string path = values["config"].as<std::string>();
-  const std::string bag = values["bag"].as<std::string>();
   std::vector<std::string> warnings;
-  vins::pipeline::PipelineOptions options = vins::pipeline::readPipelineOptions(
-      path, &warnings,
-      [&bag](const std::string& topic) { return vins::pipeline::readCameraInfo(bag, topic); });
-  const std::string difference = compareWithCameraInfo(bag, options);
-  if (!difference.empty()) warnings.push_back(difference);
+  vins::pipeline::PipelineOptions options = vins::pipeline::readOptionsForRecording(
+      values["config"].as<std::string>(), values["bag"].as<std::string>(), &warnings);
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
   // The result must not depend on the computer's speed.
   options.estimator.max_solver_time = 0.0;
@@ -339,8 +320,6 @@ vins::ToolExit runBag(const po::variables_map& values) {
   if (!run.maps.file_to_save.empty() && !run.options.loops.is_on) {
     throw vins::InputError("--save-map: a map needs loop closing, which is off");
   }
-  // The ASL layout has both sensors in one file.
-  if (fs::is_directory(values["bag"].as<std::string>())) run.options.accel_topic.clear();
   run.recording = vins::pipeline::openRecording(values["bag"].as<std::string>(),
                                                 selectionOf(values, run.options));
   run.reached = run.recording->summary().begin;
