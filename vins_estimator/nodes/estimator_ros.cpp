@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kMaxFramesWaiting = 40;  // two seconds at 20 Hz
 constexpr std::size_t kRecentEvents = 5;
 constexpr std::size_t kManyWaiting = 5;  // frames: a quarter of a second behind at 20 Hz
+constexpr double kFindingLasts = 15.0;   // findings are told again every ten seconds [s]
 constexpr double kSilence = 2.0;         // without input, before somebody is told [s]
 const char* const kFeatureTopic = "feature_tracker/feature";
 
@@ -33,6 +34,12 @@ void log(const Event& event) {
   } else {
     ROS_INFO_STREAM(event);
   }
+}
+
+/// Data that cannot be what they claim (ImuPlausibility, ImuJoiner); single samples aside.
+bool isInputFinding(const Event& event) {
+  if (event.code == "imu_gap" || event.code == "imu_disorder") return false;
+  return event.code.rfind("imu_", 0) == 0 || event.code == "clocks_apart";
 }
 
 /// Converts, or says what is wrong with the message and drops it.
@@ -215,7 +222,12 @@ void EstimatorRos::handle(const std::vector<Event>& events) {
   for (const Event& event : events) log(event);
   publisher_.publish(events);
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const Event& event : events) recent_.push_back(event);
+  for (const Event& event : events) {
+    recent_.push_back(event);
+    if (!isInputFinding(event)) continue;
+    finding_ = event.text;
+    finding_time_ = ros::WallTime::now();
+  }
   while (recent_.size() > kRecentEvents) recent_.pop_front();
 }
 
@@ -268,6 +280,11 @@ std::string EstimatorRos::missingInput() const {
   return "";
 }
 
+std::string EstimatorRos::inputFinding() const {
+  const bool is_old = (ros::WallTime::now() - finding_time_).toSec() > kFindingLasts;
+  return is_old ? "" : finding_;
+}
+
 std::string EstimatorRos::waitingReason() const {
   for (auto event = recent_.rbegin(); event != recent_.rend(); ++event) {
     if (event->code.rfind("init_", 0) == 0) return event->text;
@@ -277,6 +294,11 @@ std::string EstimatorRos::waitingReason() const {
 
 void EstimatorRos::summarize(diagnostic_updater::DiagnosticStatusWrapper* status) {
   using diagnostic_msgs::DiagnosticStatus;
+  // Bad inputs come first: they are why the rest fails.
+  const std::string finding = inputFinding();
+  if (latest_.status != EstimatorStatus::kTracking && !finding.empty()) {
+    return status->summary(DiagnosticStatus::WARN, finding);
+  }
   const std::string missing = missingInput();
   if (!missing.empty()) return status->summary(DiagnosticStatus::WARN, missing);
   if (latest_.status == EstimatorStatus::kTracking) {

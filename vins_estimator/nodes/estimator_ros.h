@@ -80,6 +80,8 @@ class EstimatorRos {
   void summarize(diagnostic_updater::DiagnosticStatusWrapper* status);
   std::string missingInput() const;
   std::string waitingReason() const;
+  /// What is wrong with the inputs, where that was found lately; empty otherwise.
+  std::string inputFinding() const;
 
   EstimatorOptions options_;
   Estimator estimator_;  // the worker's alone
@@ -102,6 +104,8 @@ class EstimatorRos {
   bool stopping_ = false;
   Figures latest_;
   std::deque<Event> recent_;
+  std::string finding_;  // about the inputs, the latest
+  ros::WallTime finding_time_;
 
   diagnostic_updater::Updater diagnostics_;
   ros::Subscriber imu_, acceleration_, features_, matches_, restarts_;

@@ -84,6 +84,27 @@ TEST(WaitingReason, AnAlignmentThatFailsNamesASlowImu) {
   EXPECT_FALSE(contains(explain(alignment, inputs), "raise the IMU's rate"));
 }
 
+TEST(WaitingReason, GravityThatIsNoneTellsItsUnitOrThatItIsMissing) {
+  Alignment alignment;
+  alignment.status = AlignmentStatus::kGravityImplausible;
+  alignment.gravity = 1.01;
+  EXPECT_TRUE(contains(explain(alignment, good()), "is it in g?"));
+  alignment.gravity = 0.08;
+  EXPECT_TRUE(contains(explain(alignment, good()), "not fill linear_acceleration"));
+  alignment.gravity = 12.0;
+  EXPECT_TRUE(contains(explain(alignment, good()), "12 m/s^2 and no gravity; check g_norm"));
+}
+
+TEST(WaitingReason, AGyroscopeOfZerosIsNamedWhicheverPartFails) {
+  InputFigures inputs = good();
+  inputs.turn_rate = 0.0;
+  EXPECT_TRUE(contains(explainFewTracks(inputs), "does the driver fill angular_velocity?"));
+  Alignment alignment;
+  alignment.status = AlignmentStatus::kGyroscopeDisagrees;
+  EXPECT_TRUE(contains(explain(alignment, inputs), "does the driver fill angular_velocity?"));
+  EXPECT_TRUE(contains(explain(alignment, good()), "check T_bc, td and the intrinsics"));
+}
+
 /// Frames at 20 Hz with 100 features, of which the next frame has `lasting`.
 std::deque<SharedMeasurements> framesWith(int lasting) {
   std::deque<SharedMeasurements> frames;

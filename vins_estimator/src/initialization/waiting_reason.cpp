@@ -37,6 +37,18 @@ std::string rounded(double value) {
   return text.str();
 }
 
+/// What is odd about a gyroscope that images contradict; empty where nothing is.
+std::string suspectGyroscope(const InputFigures& inputs) {
+  if (inputs.turn_rate > kTurnBeyond) {
+    return "which is " + rounded(inputs.turn_rate) +
+           " rad/s on average: is it in deg/s? Give rad/s";
+  }
+  if (inputs.turn_rate < kNoTurn) {
+    return "which is no turn at all: does the driver fill angular_velocity?";
+  }
+  return "";
+}
+
 /// Why features do not last from one image to the next.
 std::string textOfShortTracks(const InputFigures& inputs) {
   const std::string found = "waiting: features do not last: only " +
@@ -66,19 +78,19 @@ std::string textOfFewTracks(const InputFigures& inputs) {
     return "waiting: features leave the view too soon, and the gyroscope turns at " +
            rounded(inputs.turn_rate) + " rad/s: move sideways with less turning";
   }
+  if (inputs.turn_rate < kNoTurn) {
+    return "waiting: features leave the view too soon, though the gyroscope says that nothing "
+           "turns: "
+           "does the driver fill angular_velocity?";
+  }
   return "waiting: features leave the view too soon: move more slowly, or farther from the scene";
 }
 
 std::string textOfInconsistency(const InputFigures& inputs) {
   const std::string found =
       "waiting: the images fit no rigid scene that turns as the gyroscope says";
-  if (inputs.turn_rate > kTurnBeyond) {
-    return found + ", which is " + rounded(inputs.turn_rate) +
-           " rad/s on average: is it in deg/s? Give rad/s";
-  }
-  if (inputs.turn_rate < kNoTurn) {
-    return found + ", which is no turn at all: does the driver fill angular_velocity?";
-  }
+  const std::string suspect = suspectGyroscope(inputs);
+  if (!suspect.empty()) return found + ", " + suspect;
   if (inputs.imu_period > kRareSamples) {
     return found + ", and IMU samples come only every " + rounded(inputs.imu_period) +
            " s: raise the IMU's rate to 100 Hz or more";
@@ -98,16 +110,33 @@ std::string textOf(StructureStatus status, const InputFigures& inputs) {
   }
 }
 
-const char* textOf(AlignmentStatus status) {
-  switch (status) {
+std::string textOfGravity(double gravity) {
+  const std::string found =
+      "waiting: what remains of the acceleration is " + rounded(gravity) + " m/s^2 and no gravity";
+  if (gravity > 0.85 && gravity < 1.15) return found + ": is it in g? Give m/s^2";
+  if (gravity < 5.0) {
+    return found + ": does the driver take gravity away, or not fill linear_acceleration?";
+  }
+  return found + "; check g_norm, T_bc and td, or move more";
+}
+
+std::string textOfDisagreement(const InputFigures& inputs) {
+  const std::string suspect = suspectGyroscope(inputs);
+  if (suspect.empty()) {
+    return "waiting: images and gyroscope turn differently; check T_bc, td and the intrinsics";
+  }
+  return "waiting: images do not turn as the gyroscope says, " + suspect;
+}
+
+std::string textOf(const Alignment& alignment, const InputFigures& inputs) {
+  switch (alignment.status) {
     case AlignmentStatus::kLittleExcitation:
       return "waiting: too little acceleration to tell the scale; move with changes of speed and "
              "direction";
     case AlignmentStatus::kGyroscopeDisagrees:
-      return "waiting: images and gyroscope turn differently; check T_bc, td and the intrinsics";
+      return textOfDisagreement(inputs);
     case AlignmentStatus::kGravityImplausible:
-      return "waiting: what remains of the acceleration is not gravity; check g_norm, T_bc and td, "
-             "or move more";
+      return textOfGravity(alignment.gravity);
     case AlignmentStatus::kImplausible:
       return "waiting: the solution has a speed or biases beyond reason; check the IMU's units";
     default:
@@ -186,7 +215,7 @@ WaitingReason explain(const VisualStructure& structure, const InputFigures& inpu
 
 WaitingReason explain(const Alignment& alignment, const InputFigures& inputs) {
   const bool little = alignment.status == AlignmentStatus::kLittleExcitation;
-  std::string text = textOf(alignment.status);
+  std::string text = textOf(alignment, inputs);
   if (!little && inputs.imu_period > kRareSamples) {
     text += "; IMU samples come only every " + rounded(inputs.imu_period) +
             " s: raise the IMU's rate to 100 Hz or more";
