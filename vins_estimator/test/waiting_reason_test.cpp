@@ -95,8 +95,10 @@ TEST(WaitingReason, GravityThatIsNoneTellsItsUnitOrThatItIsMissing) {
   EXPECT_TRUE(contains(explain(alignment, good()), "12 m/s^2 and no gravity; check g_norm"));
 }
 
-TEST(WaitingReason, AGyroscopeOfZerosIsNamedWhicheverPartFails) {
+TEST(WaitingReason, AnOddGyroscopeIsNamedWhicheverPartFails) {
   InputFigures inputs = good();
+  inputs.turn_rate = 33.0;
+  EXPECT_TRUE(contains(explainFewTracks(inputs), "is it in deg/s?"));
   inputs.turn_rate = 0.0;
   EXPECT_TRUE(contains(explainFewTracks(inputs), "does the driver fill angular_velocity?"));
   Alignment alignment;

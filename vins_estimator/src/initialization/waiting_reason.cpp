@@ -74,16 +74,14 @@ std::string textOfFewTracks(const InputFigures& inputs) {
            ": is the lens free and in focus, is there light? Show the camera a textured scene";
   }
   if (inputs.lasting < kLasting) return textOfShortTracks(inputs);
+  const std::string found = "waiting: features leave the view too soon";
+  const std::string suspect = suspectGyroscope(inputs);
+  if (!suspect.empty()) return found + "; odd is the gyroscope's rate, " + suspect;
   if (inputs.turn_rate > 0.5) {
-    return "waiting: features leave the view too soon, and the gyroscope turns at " +
-           rounded(inputs.turn_rate) + " rad/s: move sideways with less turning";
+    return found + ", and the gyroscope turns at " + rounded(inputs.turn_rate) +
+           " rad/s: move sideways with less turning";
   }
-  if (inputs.turn_rate < kNoTurn) {
-    return "waiting: features leave the view too soon, though the gyroscope says that nothing "
-           "turns: "
-           "does the driver fill angular_velocity?";
-  }
-  return "waiting: features leave the view too soon: move more slowly, or farther from the scene";
+  return found + ": move more slowly, or farther from the scene";
 }
 
 std::string textOfInconsistency(const InputFigures& inputs) {
