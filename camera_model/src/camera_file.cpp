@@ -302,9 +302,9 @@ std::string toKalibrYaml(const Camera& camera, const std::string& kalibr_camera)
   const CameraParameters p = camera.parameters();
   const bool has_k3 = camera.model() == CameraModel::kPinhole && distortionCount(camera) > 4;
   if (camera.model() == CameraModel::kScaramuzza || has_k3) {
-    throw InputError("camera '" + camera.name() + "': Kalibr has no form for " +
-                     (has_k3 ? "PINHOLE with more than k1, k2, p1, p2; calibrate without them"
-                             : "SCARAMUZZA"));
+    throw InputError(
+        "camera '" + camera.name() + "': Kalibr has no form for " +
+        (has_k3 ? "PINHOLE with more than k1, k2, p1, p2; calibrate without them" : "SCARAMUZZA"));
   }
   const KalibrForm* form = nullptr;
   for (const KalibrForm& candidate : kalibrForms()) {

@@ -25,9 +25,7 @@ RadtanDistortion distortionOf(const CameraParameters& p, ImageSize size) {
 
 PinholeRadtan::PinholeRadtan(const std::string& name, ImageSize size,
                              const CameraParameters& parameters)
-    : Camera(name, size),
-      count_(countOf(parameters)),
-      distortion_(distortionOf(parameters, size)) {
+    : Camera(name, size), count_(countOf(parameters)), distortion_(distortionOf(parameters, size)) {
   requireCount(model(), parameters, count_);
   requireFinite(parameters);
   fx_ = parameters[0];

@@ -39,11 +39,11 @@ enum class ImuNoiseUnit {
 
 /// The inertial sensor of a rig. The body frame is the IMU's.
 struct RigImu {
-  std::string topic;        ///< sensor_msgs/Imu; empty where the file names none
+  std::string topic;  ///< sensor_msgs/Imu; empty where the file names none
   /// sensor_msgs/Imu of an accelerometer with a topic of its own: `topic` is then the gyroscope's.
   /// Empty: both come on `topic`.
   std::string accel_topic;
-  ImuNoise noise;           ///< always densities
+  ImuNoise noise;                              ///< always densities
   ImuNoiseUnit unit = ImuNoiseUnit::kDensity;  ///< of the figures in the file
   double rate = 200.0;                         ///< [Hz]
 };

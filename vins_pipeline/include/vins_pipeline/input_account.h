@@ -33,8 +33,8 @@ class InputAccount {
   /// Throws InputError with the first reason where every image has been refused.
   void requireImages() const;
 
-  /// When the IMU, or a part of it with a topic of its own, ended, where images of its time go on for more than half a second behind that
-  /// [ns].
+  /// When the IMU, or a part of it with a topic of its own, ended, where images of its time go on
+  /// for more than half a second behind that [ns].
   std::optional<Stamp> imuEnd() const;
 
   /// Lines for a summary: damage, refused images, an IMU that ended early; empty where all is well.

@@ -90,7 +90,8 @@ class Recording {
 
 /// A folder in the ASL layout (EuRoC's): topics are /camN/image_raw, at N the topic's own number or
 /// else its place in the selection; the IMU's topics are of no meaning, and its samples are
-/// whole. Images that are listed but not there are left out. Throws InputError naming what is missing, or a span that holds nothing.
+/// whole. Images that are listed but not there are left out. Throws InputError naming what is
+/// missing, or a span that holds nothing.
 std::unique_ptr<Recording> openAslRecording(const std::string& folder,
                                             const RecordingSelection& selection);
 
