@@ -1,5 +1,6 @@
 #include "camera_model/camera_file.h"
 
+#include <algorithm>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -57,6 +58,13 @@ bool hasDistortion(const Parameters& file) {
   return false;
 }
 
+/// Takes k4, k5 and k6 from a pinhole's parameters where all are zero: a polynomial is left.
+void dropIdleDenominator(std::vector<double>* pinhole) {
+  if (std::all_of(pinhole->begin() + 9, pinhole->end(), [](double k) { return k == 0.0; })) {
+    pinhole->resize(9);
+  }
+}
+
 std::vector<double> readPinhole(const Parameters& file) {
   std::vector<double> values;
   append(file.section("projection_parameters"), {"fx", "fy", "cx", "cy"}, &values);
@@ -66,7 +74,8 @@ std::vector<double> readPinhole(const Parameters& file) {
   }
   const Parameters distortion = file.section("distortion_parameters");
   append(distortion, {"k1", "k2", "p1", "p2"}, &values);
-  values.push_back(distortion.numberOr("k3", 0.0));
+  for (const char* key : {"k3", "k4", "k5", "k6"}) values.push_back(distortion.numberOr(key, 0.0));
+  dropIdleDenominator(&values);
   return values;
 }
 
@@ -184,19 +193,21 @@ std::unique_ptr<Camera> readKalibr(const Parameters& file, const std::string& na
   bool has_distortion = false;
   const KalibrForm& form = kalibrFormOf(section, &has_distortion);
   const std::size_t own = form.intrinsics.size() + form.coefficients.size();
-  // One more than Kalibr writes: k3, as OpenCV gives it.
-  CameraParameters p = CameraParameters::Zero(form.model == CameraModel::kPinhole ? 9 : own);
+  // More than Kalibr writes: k3 or k3, k4, k5, k6, as OpenCV gives them.
+  const bool is_pinhole = form.model == CameraModel::kPinhole;
+  std::vector<double> values(is_pinhole ? 12 : own, 0.0);
   const std::vector<double> intrinsics = section.numbers("intrinsics", {form.intrinsics.size()});
-  for (std::size_t i = 0; i < intrinsics.size(); ++i) p[form.intrinsics[i]] = intrinsics[i];
+  for (std::size_t i = 0; i < intrinsics.size(); ++i) values[form.intrinsics[i]] = intrinsics[i];
   if (has_distortion) {
-    const bool may_have_k3 = form.model == CameraModel::kPinhole;
-    const std::vector<double> k = may_have_k3 ? section.numbers("distortion_coeffs", {4, 5})
-                                              : section.numbers("distortion_coeffs", {4});
-    for (std::size_t i = 0; i < 4; ++i) p[form.coefficients[i]] = k[i];
-    if (k.size() == 5) p[8] = k[4];
+    const std::vector<double> k = is_pinhole ? section.numbers("distortion_coeffs", {4, 5, 8})
+                                             : section.numbers("distortion_coeffs", {4});
+    for (std::size_t i = 0; i < 4; ++i) values[form.coefficients[i]] = k[i];
+    std::copy(k.begin() + 4, k.end(), values.begin() + static_cast<std::ptrdiff_t>(own));
   } else {
     section.know({"distortion_coeffs"});
   }
+  if (is_pinhole) dropIdleDenominator(&values);
+  const CameraParameters p = toParameters(values);
   const std::vector<double> resolution = section.numbers("resolution", {2});
   const ImageSize size{static_cast<int>(resolution[0]), static_cast<int>(resolution[1])};
   return namingFile(file, [&] { return makeCamera(form.model, name, size, p); });
@@ -227,11 +238,17 @@ std::string inversePolynomialText(const Scaramuzza& camera) {
   return sectionText("inv_poly_parameters", names, values);
 }
 
+/// Coefficients of a pinhole's distortion that need be written.
+int distortionCount(const Camera& pinhole) {
+  const CameraParameters p = pinhole.parameters();
+  if (p.size() > 9) return static_cast<int>(p.size()) - 4;
+  return p[8] == 0.0 ? 4 : 5;
+}
+
 std::string parametersText(const Camera& camera) {
   switch (camera.model()) {
     case CameraModel::kPinhole:
-      return sectionText("distortion_parameters", camera, 4,
-                         camera.parameters()[8] == 0.0 ? 4 : 5) +
+      return sectionText("distortion_parameters", camera, 4, distortionCount(camera)) +
              sectionText("projection_parameters", camera, 0, 4);
     case CameraModel::kKannalaBrandt:
       return sectionText("projection_parameters", camera, 0, 8);
@@ -283,10 +300,11 @@ std::string toCamodocalYaml(const Camera& camera) {
 
 std::string toKalibrYaml(const Camera& camera, const std::string& kalibr_camera) {
   const CameraParameters p = camera.parameters();
-  const bool has_k3 = camera.model() == CameraModel::kPinhole && p[8] != 0.0;
+  const bool has_k3 = camera.model() == CameraModel::kPinhole && distortionCount(camera) > 4;
   if (camera.model() == CameraModel::kScaramuzza || has_k3) {
-    throw InputError("camera '" + camera.name() + "': Kalibr has no form for " +
-                     (has_k3 ? "PINHOLE with k3; calibrate without it" : "SCARAMUZZA"));
+    throw InputError(
+        "camera '" + camera.name() + "': Kalibr has no form for " +
+        (has_k3 ? "PINHOLE with more than k1, k2, p1, p2; calibrate without them" : "SCARAMUZZA"));
   }
   const KalibrForm* form = nullptr;
   for (const KalibrForm& candidate : kalibrForms()) {

@@ -13,9 +13,9 @@ constexpr double kMaxAngle = 0.99 * M_PI;
 /// Closer to the axis than this share of the depth, the map is linear to double precision.
 constexpr double kOnAxis = 1e-9;
 
-RadialPolynomial polynomialOf(const CameraParameters& p, ImageSize size) {
-  if (p.size() != kCount) return RadialPolynomial({}, kMaxAngle, 1.0);
-  return RadialPolynomial({p[0], p[1], p[2], p[3]}, kMaxAngle,
+RadialDistortion polynomialOf(const CameraParameters& p, ImageSize size) {
+  if (p.size() != kCount) return RadialDistortion({}, kMaxAngle, 1.0);
+  return RadialDistortion({p[0], p[1], p[2], p[3]}, kMaxAngle,
                           imageReach(size, p[4], p[5], p[6], p[7]));
 }
 

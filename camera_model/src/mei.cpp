@@ -14,7 +14,7 @@ constexpr double kFoldMargin = 0.02;
 
 RadtanDistortion distortionOf(const CameraParameters& p, ImageSize size) {
   if (p.size() != kCount) return RadtanDistortion({}, 1.0);
-  return RadtanDistortion({p[1], p[2], p[3], p[4], 0.0}, imageReach(size, p[5], p[6], p[7], p[8]));
+  return RadtanDistortion({p[1], p[2], p[3], p[4]}, imageReach(size, p[5], p[6], p[7], p[8]));
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ std::optional<Eigen::Vector2d> Mei::project(const Eigen::Vector3d& p_c,
   if (!(depth > 0.0) || range + xi_ * p_c.z() < kFoldMargin * depth) return std::nullopt;
   const Eigen::Vector2d m = p_c.head<2>() / depth;
   Eigen::Matrix2d J_m;
-  RadtanDistortion::Matrix25 J_k;
+  RadtanDistortion::Matrix28 J_k;
   const auto d = distortion_.distort(m, jacobians ? &J_m : nullptr, jacobians ? &J_k : nullptr);
   if (!d) return std::nullopt;
   if (jacobians != nullptr) {

@@ -1,23 +1,32 @@
 #include "camera_model/pinhole_radtan.h"
 
+#include <algorithm>
+
 #include "image_plane.h"
 
 namespace vins::camera_model {
 namespace {
 
 constexpr int kCount = 9;
+constexpr int kRationalCount = 12;
+
+int countOf(const CameraParameters& p) {
+  return p.size() == kRationalCount ? kRationalCount : kCount;
+}
 
 RadtanDistortion distortionOf(const CameraParameters& p, ImageSize size) {
-  if (p.size() != kCount) return RadtanDistortion({}, 1.0);
-  return RadtanDistortion({p[4], p[5], p[6], p[7], p[8]}, imageReach(size, p[0], p[1], p[2], p[3]));
+  if (p.size() != countOf(p)) return RadtanDistortion({}, 1.0);
+  RadtanDistortion::Coefficients k{};
+  std::copy(p.data() + 4, p.data() + p.size(), k.begin());
+  return RadtanDistortion(k, imageReach(size, p[0], p[1], p[2], p[3]));
 }
 
 }  // namespace
 
 PinholeRadtan::PinholeRadtan(const std::string& name, ImageSize size,
                              const CameraParameters& parameters)
-    : Camera(name, size), distortion_(distortionOf(parameters, size)) {
-  requireCount(model(), parameters, kCount);
+    : Camera(name, size), count_(countOf(parameters)), distortion_(distortionOf(parameters, size)) {
+  requireCount(model(), parameters, count_);
   requireFinite(parameters);
   fx_ = parameters[0];
   fy_ = parameters[1];
@@ -33,7 +42,7 @@ std::optional<Eigen::Vector2d> PinholeRadtan::project(const Eigen::Vector3d& p_c
   const double inverse_z = 1.0 / p_c.z();
   const Eigen::Vector2d m = p_c.head<2>() * inverse_z;
   Eigen::Matrix2d J_m;
-  RadtanDistortion::Matrix25 J_k;
+  RadtanDistortion::Matrix28 J_k;
   const auto d = distortion_.distort(m, jacobians ? &J_m : nullptr, jacobians ? &J_k : nullptr);
   if (!d) return std::nullopt;
   if (jacobians != nullptr) {
@@ -42,11 +51,11 @@ std::optional<Eigen::Vector2d> PinholeRadtan::project(const Eigen::Vector3d& p_c
     J_m_point << inverse_z, 0.0, -m.x() * inverse_z, 0.0, inverse_z, -m.y() * inverse_z;
     jacobians->J_pixel_point = f.asDiagonal() * J_m * J_m_point;
     auto& J = jacobians->J_pixel_parameters;
-    J.setZero(2, kCount);
+    J.setZero(2, count_);
     J(0, 0) = d->x();
     J(1, 1) = d->y();
     J(0, 2) = J(1, 3) = 1.0;
-    J.rightCols<5>() = f.asDiagonal() * J_k;
+    J.rightCols(count_ - 4) = f.asDiagonal() * J_k.leftCols(count_ - 4);
   }
   return Eigen::Vector2d(fx_ * d->x() + cx_, fy_ * d->y() + cy_);
 }
@@ -59,13 +68,17 @@ std::optional<Eigen::Vector3d> PinholeRadtan::unproject(const Eigen::Vector2d& p
 
 CameraParameters PinholeRadtan::parameters() const {
   const auto& k = distortion_.coefficients();
-  CameraParameters p(kCount);
-  p << fx_, fy_, cx_, cy_, k[0], k[1], k[2], k[3], k[4];
+  CameraParameters p(count_);
+  p.head<4>() << fx_, fy_, cx_, cy_;
+  std::copy_n(k.begin(), count_ - 4, p.data() + 4);
   return p;
 }
 
 std::vector<std::string> PinholeRadtan::parameterNames() const {
-  return {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
+  std::vector<std::string> names = {"fx", "fy", "cx", "cy", "k1", "k2",
+                                    "p1", "p2", "k3", "k4", "k5", "k6"};
+  names.resize(static_cast<std::size_t>(count_));
+  return names;
 }
 
 std::unique_ptr<Camera> PinholeRadtan::withParameters(const CameraParameters& parameters) const {

@@ -20,9 +20,9 @@ bool stretchesBy(double least, const Eigen::Matrix2d& J) {
 
 }  // namespace
 
-RadtanDistortion::RadtanDistortion(const std::array<double, 5>& k1_k2_p1_p2_k3, double reach)
-    : k_(k1_k2_p1_p2_k3),
-      radial_({k_[0], k_[1], k_[4], 0.0}, kLimit, reach),
+RadtanDistortion::RadtanDistortion(const Coefficients& coefficients, double reach)
+    : k_(coefficients),
+      radial_({k_[0], k_[1], k_[4], 0.0}, kLimit, reach, {k_[5], k_[6], k_[7]}),
       squared_max_radius_(radial_.maxRadius() * radial_.maxRadius()) {}
 
 Eigen::Vector2d RadtanDistortion::map(const Eigen::Vector2d& point, Eigen::Matrix2d* J) const {
@@ -30,7 +30,7 @@ Eigen::Vector2d RadtanDistortion::map(const Eigen::Vector2d& point, Eigen::Matri
   const double s = x * x + y * y;
   const double ratio = radial_.ratio(s);
   if (J != nullptr) {
-    const double d_ratio = 2.0 * (k_[0] + s * (2.0 * k_[1] + s * 3.0 * k_[4]));  // by s, times 2
+    const double d_ratio = 2.0 * radial_.ratioDerivative(s);
     const double tx = 2.0 * k_[3] * x, ty = 2.0 * k_[2] * y;
     const double off = d_ratio * x * y + 2.0 * k_[2] * x + 2.0 * k_[3] * y;
     *J << ratio + d_ratio * x * x + ty + 3.0 * tx, off, off,
@@ -43,12 +43,12 @@ Eigen::Vector2d RadtanDistortion::map(const Eigen::Vector2d& point, Eigen::Matri
 bool RadtanDistortion::isInvertible(const Eigen::Vector2d& point, const Eigen::Matrix2d& J,
                                     double slack) const {
   return point.squaredNorm() <= squared_max_radius_ * (1.0 + slack) &&
-         stretchesBy((1.0 - slack) * RadialPolynomial::kMinSlope, J);
+         stretchesBy((1.0 - slack) * RadialDistortion::kMinSlope, J);
 }
 
 std::optional<Eigen::Vector2d> RadtanDistortion::distort(const Eigen::Vector2d& point,
                                                          Eigen::Matrix2d* J_point,
-                                                         Matrix25* J_coefficients) const {
+                                                         Matrix28* J_coefficients) const {
   if (!(point.squaredNorm() <= squared_max_radius_)) return std::nullopt;
   Eigen::Matrix2d J;
   const Eigen::Vector2d distorted = map(point, &J);
@@ -56,8 +56,13 @@ std::optional<Eigen::Vector2d> RadtanDistortion::distort(const Eigen::Vector2d& 
   if (J_point != nullptr) *J_point = J;
   if (J_coefficients != nullptr) {
     const double x = point.x(), y = point.y(), s = point.squaredNorm();
-    *J_coefficients << x * s, x * s * s, 2.0 * x * y, s + 2.0 * x * x, x * s * s * s,  //
-        y * s, y * s * s, s + 2.0 * y * y, 2.0 * x * y, y * s * s * s;
+    const Eigen::Vector2d by_numerator = point / radial_.denominator(s);
+    const Eigen::Vector2d by_denominator = -radial_.ratio(s) * by_numerator;
+    *J_coefficients << s * by_numerator, s * s * by_numerator,  //
+        Eigen::Vector2d(2.0 * x * y, s + 2.0 * y * y),          //
+        Eigen::Vector2d(s + 2.0 * x * x, 2.0 * x * y),          //
+        s * s * s * by_numerator, s * by_denominator, s * s * by_denominator,
+        s * s * s * by_denominator;
   }
   return distorted;
 }

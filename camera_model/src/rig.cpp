@@ -33,7 +33,8 @@ std::string numbered(const char* prefix, std::size_t camera, const char* suffix 
 /// Puts a rig together from its files, camera by camera.
 class RigReader {
  public:
-  explicit RigReader(const Parameters& main) : sources_(findRigSources(main)), main_(main) {
+  RigReader(const Parameters& main, const CameraInfoReader& read_camera_info)
+      : sources_(findRigSources(main)), main_(main), read_camera_info_(read_camera_info) {
     rig_.file = main.name();
   }
 
@@ -70,19 +71,32 @@ class RigReader {
 
   RigCamera readCameraOfRig(std::size_t i) {
     RigCamera camera;
-    camera.camera = readIntrinsics(i);
+    if (i == 0) {
+      camera.camera_info_topic = main_.textOr("camera_info_topic", "");
+      normalizeTopic("camera_info_topic", &camera.camera_info_topic);
+      camera.is_from_topic = !camera.camera_info_topic.empty() && !hasIntrinsics();
+    }
+    camera.camera =
+        camera.is_from_topic ? readCameraInfo(camera.camera_info_topic) : readIntrinsics(i);
     camera.T_bc = readPose(i);
     camera.image_topic = readImageTopic(i);
     camera.td = readTimeOffset(i);
     const bool is_rolling = main_.flagOr("rolling_shutter", false);
     const double readout = main_.numberOr("rolling_shutter_tr", 0.0, kReadout);
     camera.readout = is_rolling ? readout : 0.0;
-    if (i == 0) {
-      camera.camera_info_topic = main_.textOr("camera_info_topic", "");
-      normalizeTopic("camera_info_topic", &camera.camera_info_topic);
-      camera.mask_file = readMaskFile();
-    }
+    if (i == 0) camera.mask_file = readMaskFile();
     return camera;
+  }
+
+  /// Of the first camera.
+  bool hasIntrinsics() const {
+    return main_.has("cam0_calib") || main_.has("model_type") || sources_.chainSection(0);
+  }
+
+  std::shared_ptr<const Camera> readCameraInfo(const std::string& topic) const {
+    if (read_camera_info_) return read_camera_info_(topic);
+    main_.fail("camera_info_topic", "'" + topic + "' and no intrinsics in the file",
+               "the intrinsics in the file (model_type, ...), for this program reads no topic");
   }
 
   std::shared_ptr<const Camera> readIntrinsics(std::size_t i) {
@@ -186,12 +200,6 @@ class RigReader {
                            " cameras: odometry goes by the first; the feature tracker's node also "
                            "follows the second");
     }
-    if (!rig_.imu.accel_topic.empty()) {
-      main_.remark("accel_topic", "accel_topic is not subscribed yet");
-    }
-    if (!rig_.cameras[0].camera_info_topic.empty()) {
-      main_.remark("camera_info_topic", "camera_info_topic is not subscribed yet");
-    }
   }
 
   /// Those of the keys that stages read stay unknown to the rig's reader only.
@@ -233,12 +241,15 @@ class RigReader {
 
   RigSources sources_;
   Parameters main_;
+  CameraInfoReader read_camera_info_;
   Rig rig_;
 };
 
 }  // namespace
 
-Rig readRig(const Parameters& parameters) { return RigReader(parameters).read(); }
+Rig readRig(const Parameters& parameters, const CameraInfoReader& read_camera_info) {
+  return RigReader(parameters, read_camera_info).read();
+}
 
 Rig readRigFile(const std::string& path) { return readRig(Parameters::load(path)); }
 

@@ -150,6 +150,25 @@ TEST(CameraFile, KeepsK3) {
   EXPECT_EQ(read(toCamodocalYaml(*camera))->parameters(), p);
 }
 
+TEST(CameraFile, RationalDistortionRoundTripsExactly) {
+  const CameraParameters p =
+      parametersOf({504, 505, 321, 238, 0.5, -2.6, 3e-3, -2e-3, 1.5, 0.39, -2.4, 1.43});
+  const PinholeRadtan camera("rational", {640, 480}, p);
+  EXPECT_EQ(read(toCamodocalYaml(camera))->parameters(), p);
+  EXPECT_THROW(toKalibrYaml(camera), InputError);
+}
+
+TEST(CameraFile, ReadsTheEightCoefficientsOfOpenCv) {
+  const std::string text = replaced(replaced(kKalibr, "[0.0034, 0.0007, -0.002, 0.0002]",
+                                             "[0.5, -2.6, 3e-3, -2e-3, 1.5, 0.39, -2.4, 1.43]"),
+                                    "equidistant", "radtan");
+  EXPECT_EQ(read(text)->parameters(), parametersOf({190.9, 190.8, 254.9, 256.8, 0.5, -2.6, 3e-3,
+                                                    -2e-3, 1.5, 0.39, -2.4, 1.43}));
+  // Zeros are no denominator: nine parameters are left.
+  const std::string zeros = replaced(text, "0.39, -2.4, 1.43", "0, 0, 0");
+  EXPECT_EQ(read(zeros)->parameters().size(), 9);
+}
+
 TEST(CameraFile, WritesWhatOpencvsReaderReads) {
   // VINS-Mono and camodocal read by cv::FileStorage.
   for (const auto& camera : vins::camera_model::testing::exampleCameras()) {

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 using testing::parametersOf;
 
 /// Every model's example camera, and harder ones: strong tangential distortion, k3, a long lens,
-/// xi on both sides of 1, sheared OCam.
+/// xi on both sides of 1, sheared OCam, rational distortion.
 std::vector<std::shared_ptr<const Camera>> cameras() {
   auto all = vins::camera_model::testing::exampleCameras();
   const ImageSize vga{640, 480};
@@ -27,6 +27,12 @@ std::vector<std::shared_ptr<const Camera>> cameras() {
       "tangential", vga, parametersOf({530, 531, 342, 234, -0.28, 0.10, 0.004, -0.003, -0.04})));
   all.push_back(std::make_shared<PinholeRadtan>(
       "pincushion", vga, parametersOf({300, 310, 310, 250, 0.12, 0.05, -0.002, 0.001, 0.01})));
+  all.push_back(std::make_shared<PinholeRadtan>(
+      "rational", vga,
+      parametersOf({430, 431, 318, 243, 9.5, 5.1, 2e-4, -1e-4, 0.25, 9.8, 8.3, 1.35})));
+  all.push_back(std::make_shared<PinholeRadtan>(
+      "wide rational", vga,
+      parametersOf({504, 504, 320, 240, 0.5, -2.6, 3e-3, -2e-3, 1.5, 0.39, -2.4, 1.43})));
   all.push_back(std::make_shared<PinholeRadtan>(
       "ideal", vga, parametersOf({5000, 5000, 320, 240, 0, 0, 0, 0, 0})));
   all.push_back(std::make_shared<KannalaBrandt>("ideal equidistant", vga,
@@ -251,6 +257,35 @@ TEST(PinholeRadtan, SeesNothingBehindOrBeyondTheFoldOfItsDistortion) {
   EXPECT_FALSE(folding.project({1.0, 0.0, 1.0}));
   EXPECT_FALSE(folding.project({1.6, 0.0, 1.0}));
   EXPECT_FALSE(folding.unproject({320 + 0.7 * 300, 240}));
+}
+
+TEST(PinholeRadtan, SeesNothingBeyondTheFoldOfRationalDistortion) {
+  // r / (1 + r^2) has its maximum 1/2 at r = 1; beyond it points would fold back.
+  const PinholeRadtan folding("folding", {640, 480},
+                              parametersOf({300, 300, 320, 240, 0, 0, 0, 0, 0, 1, 0, 0}));
+  EXPECT_TRUE(folding.project({0.95, 0.0, 1.0}));
+  EXPECT_FALSE(folding.project({1.0, 0.0, 1.0}));
+  EXPECT_FALSE(folding.project({1.6, 0.0, 1.0}));
+  EXPECT_FALSE(folding.unproject({320 + 0.51 * 300, 240}));
+  // 1 / (1 - r^4) has a pole at r = 1, and is negative beyond it.
+  const PinholeRadtan pole("pole", {640, 480},
+                           parametersOf({300, 300, 320, 240, 0, 0, 0, 0, 0, 0, -1, 0}));
+  EXPECT_TRUE(pole.project({0.95, 0.0, 1.0}));
+  EXPECT_FALSE(pole.project({1.0, 0.0, 1.0}));
+  EXPECT_FALSE(pole.project({1.2, 0.0, 1.0}));
+}
+
+TEST(PinholeRadtan, WithoutADenominatorRationalDistortionIsThePolynomial) {
+  const ImageSize vga{640, 480};
+  const PinholeRadtan polynomial(
+      "polynomial", vga, parametersOf({530, 531, 342, 234, -0.28, 0.10, 0.004, -0.003, -0.04}));
+  const PinholeRadtan rational(
+      "rational", vga,
+      parametersOf({530, 531, 342, 234, -0.28, 0.10, 0.004, -0.003, -0.04, 0, 0, 0}));
+  for (const Vector3d& p : {Vector3d(0.1, 0.2, 1.0), Vector3d(-0.5, 0.3, 1.0)}) {
+    EXPECT_EQ(*polynomial.project(p), *rational.project(p));
+  }
+  EXPECT_EQ(*polynomial.unproject({100, 50}), *rational.unproject({100, 50}));
 }
 
 TEST(KannalaBrandt, SeesBehindItself) {

@@ -57,6 +57,17 @@ TEST(OpencvAgreement, PinholeRadtanIsProjectPoints) {
   });
 }
 
+TEST(OpencvAgreement, RationalDistortionIsProjectPoints) {
+  const PinholeRadtan camera(
+      "rational", {640, 480},
+      parametersOf({504, 505, 321, 238, 0.5, -2.6, 3e-3, -2e-3, 1.5, 0.39, -2.4, 1.43}));
+  expectAgreement(camera, 0.9, [](const auto& points, auto* pixels) {
+    const std::vector<double> distortion = {0.5, -2.6, 3e-3, -2e-3, 1.5, 0.39, -2.4, 1.43};
+    cv::projectPoints(points, kNoRotation, kNoTranslation, intrinsicMatrix(504, 505, 321, 238),
+                      distortion, *pixels);
+  });
+}
+
 TEST(OpencvAgreement, KannalaBrandtIsFisheye) {
   const KannalaBrandt camera("fisheye", {512, 512},
                              parametersOf({0.0035, 0.0007, -0.0021, 0.0002, 191, 190, 255, 257}));

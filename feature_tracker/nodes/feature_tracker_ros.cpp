@@ -46,7 +46,8 @@ FeatureTrackerRos::~FeatureTrackerRos() {
 }
 
 void FeatureTrackerRos::readConfiguration() {
-  const vins_msgs::NodeConfiguration configuration = vins_msgs::loadConfiguration(private_handle_);
+  const vins_msgs::NodeConfiguration configuration =
+      vins_msgs::loadConfiguration(handle_, private_handle_);
   vins_msgs::logWarnings(configuration);
   rig_ = configuration.rig;
   camera_model::requireImageTopic(configuration.parameters, rig_);
@@ -87,6 +88,8 @@ void FeatureTrackerRos::subscribe() {
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
     subscribeCamera(static_cast<int>(i), rig_.cameras[i].image_topic);
   }
+  const camera_model::RigCamera& camera = rig_.cameras.front();
+  if (!camera.camera_info_topic.empty() && !camera.is_from_topic) compareWithCameraInfo();
   if (!uses_imu_) return;
   const boost::function<void(const sensor_msgs::ImuConstPtr&)> take =
       [this](const sensor_msgs::ImuConstPtr& message) {
@@ -94,6 +97,23 @@ void FeatureTrackerRos::subscribe() {
       };
   subscribers_.push_back(handle_.subscribe<sensor_msgs::Imu>(
       rig_.imu.topic, kImuQueue, take, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+}
+
+void FeatureTrackerRos::compareWithCameraInfo() {
+  const boost::function<void(const sensor_msgs::CameraInfoConstPtr&)> compare =
+      [this](const sensor_msgs::CameraInfoConstPtr& message) {
+        const std::string topic = camera_info_.getTopic();
+        camera_info_.shutdown();  // the first message is enough
+        try {
+          const auto difference = camera_model::describeDifference(
+              *cameras_.front(), *vins_msgs::cameraOf(*message, topic), topic);
+          if (difference) ROS_WARN_STREAM(*difference);
+        } catch (const InputError& error) {
+          ROS_WARN_STREAM(error.what());
+        }
+      };
+  camera_info_ = handle_.subscribe<sensor_msgs::CameraInfo>(rig_.cameras.front().camera_info_topic,
+                                                            1, compare);
 }
 
 void FeatureTrackerRos::subscribeCamera(int camera, const std::string& topic) {

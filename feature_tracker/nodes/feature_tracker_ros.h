@@ -24,9 +24,10 @@ namespace vins::feature_tracker {
 /// FeatureTrackerOptions for its keys); `image_transport`, "raw" (default), "compressed" (JPEG or
 /// PNG by <image_topic>/compressed, decoded here), or another transport that is installed.
 ///
-/// Subscribes the file's image_topic, image1_topic and imu_topic. Publishes, in the node's own
-/// namespace: `feature` (vins_msgs/FeatureFrame), `feature_img` (sensor_msgs/Image, drawn only
-/// where somebody subscribes), `restart` (std_msgs/Bool, true when time jumped); and /diagnostics.
+/// Subscribes the file's image_topic, image1_topic, imu_topic and camera_info_topic. Publishes, in
+/// the node's own namespace: `feature` (vins_msgs/FeatureFrame), `feature_img` (sensor_msgs/Image,
+/// drawn only where somebody subscribes), `restart` (std_msgs/Bool, true when time jumped); and
+/// /diagnostics.
 class FeatureTrackerRos {
  public:
   /// Throws InputError for parameters and files that are missing or bad.
@@ -53,6 +54,8 @@ class FeatureTrackerRos {
   void makeTracker();
   void advertise();
   void subscribe();
+  /// Warns once where camera_info_topic says something else than the file.
+  void compareWithCameraInfo();
   void subscribeCamera(int camera, const std::string& topic);
   void work();
   void process(const TrackerInput& input);
@@ -80,6 +83,7 @@ class FeatureTrackerRos {
   ros::Publisher feature_publisher_, restart_publisher_;
   image_transport::Publisher picture_publisher_;
   std::vector<ros::Subscriber> subscribers_;
+  ros::Subscriber camera_info_;
   std::vector<image_transport::Subscriber> image_subscribers_;
   diagnostic_updater::Updater updater_;
   ros::Timer diagnostic_timer_;

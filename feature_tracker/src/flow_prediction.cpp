@@ -17,7 +17,8 @@ std::vector<ImuSample> finiteSamplesAround(const std::vector<ImuSample>& imu, St
   std::vector<ImuSample> samples;
   for (const ImuSample& sample : imu) {
     const bool rises = samples.empty() || sample.stamp > samples.back().stamp;
-    if (!sample.isFinite() || !rises) continue;
+    // A gyroscope with a topic of its own may leave its acceleration undefined.
+    if (!sample.angular_velocity.allFinite() || !rises) continue;
     // Of the samples before the interval only the last one counts, of those after it the first.
     if (sample.stamp <= from) samples.clear();
     samples.push_back(sample);

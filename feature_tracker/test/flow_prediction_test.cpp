@@ -34,6 +34,15 @@ TEST(IntegrateGyroscope, NeedsSamplesThatCoverTheTime) {
   EXPECT_TRUE(integrateGyroscope(with_nan, 0, 50'000'000)->coeffs().allFinite());
 }
 
+TEST(IntegrateGyroscope, NeedsNoAcceleration) {
+  const auto samples = steadyTurn({1, 0, 0}, 0, 50'000'000);
+  auto gyroscope_alone = samples;
+  for (ImuSample& sample : gyroscope_alone) sample.acceleration.setConstant(std::nan(""));
+  const auto R = integrateGyroscope(gyroscope_alone, 0, 50'000'000);
+  ASSERT_TRUE(R);
+  EXPECT_EQ(R->coeffs(), integrateGyroscope(samples, 0, 50'000'000)->coeffs());
+}
+
 TEST(TurnPrediction, GivesTheProjectionOfPureRotation) {
   for (const auto& camera : vins::camera_model::testing::exampleCameras()) {
     const Eigen::Quaterniond R_bc = so3::exp({0.4, -1.0, 0.7});

@@ -44,7 +44,7 @@ cv::Mat toGrey(const Message& message, vins_msgs::ImageConverter* converter) {
 }  // namespace
 
 PoseGraphRos::PoseGraphRos(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
-    : PoseGraphRos(node, private_node, vins_msgs::loadConfiguration(private_node)) {}
+    : PoseGraphRos(node, private_node, vins_msgs::loadConfiguration(node, private_node)) {}
 
 PoseGraphRos::PoseGraphRos(ros::NodeHandle node, ros::NodeHandle private_node,
                            const vins_msgs::NodeConfiguration& configuration)

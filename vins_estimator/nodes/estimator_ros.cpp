@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kMaxFramesWaiting = 40;  // two seconds at 20 Hz
 constexpr std::size_t kRecentEvents = 5;
 constexpr std::size_t kManyWaiting = 5;  // frames: a quarter of a second behind at 20 Hz
+constexpr double kFindingLasts = 15.0;   // findings are told again every ten seconds [s]
 constexpr double kSilence = 2.0;         // without input, before somebody is told [s]
 const char* const kFeatureTopic = "feature_tracker/feature";
 
@@ -35,6 +36,12 @@ void log(const Event& event) {
   }
 }
 
+/// Data that cannot be what they claim (ImuPlausibility, ImuJoiner); single samples aside.
+bool isInputFinding(const Event& event) {
+  if (event.code == "imu_gap" || event.code == "imu_disorder") return false;
+  return event.code.rfind("imu_", 0) == 0 || event.code == "clocks_apart";
+}
+
 /// Converts, or says what is wrong with the message and drops it.
 template <typename Message>
 auto tryFromMsg(const Message& message) -> std::optional<decltype(vins_msgs::fromMsg(message))> {
@@ -49,7 +56,7 @@ auto tryFromMsg(const Message& message) -> std::optional<decltype(vins_msgs::fro
 }  // namespace
 
 EstimatorRos::EstimatorRos(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
-    : EstimatorRos(node, private_node, vins_msgs::loadConfiguration(private_node)) {}
+    : EstimatorRos(node, private_node, vins_msgs::loadConfiguration(node, private_node)) {}
 
 EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
                            const vins_msgs::NodeConfiguration& configuration)
@@ -62,6 +69,11 @@ EstimatorRos::EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
   diagnostics_.setHardwareID("visual-inertial rig");
   diagnostics_.add("estimator", this, &EstimatorRos::report);
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  if (!configuration.rig.imu.accel_topic.empty()) {
+    joiner_.emplace();
+    acceleration_ = node.subscribe(configuration.rig.imu.accel_topic, 2000,
+                                   &EstimatorRos::onAcceleration, this, no_delay);
+  }
   imu_ = node.subscribe(configuration.rig.imu.topic, 2000, &EstimatorRos::onImu, this, no_delay);
   features_ = node.subscribe(kFeatureTopic, 100, &EstimatorRos::onFeatures, this, no_delay);
   matches_ = node.subscribe("pose_graph/loop_match", 100, &EstimatorRos::onLoopMatch, this);
@@ -82,12 +94,43 @@ EstimatorRos::~EstimatorRos() {
 }
 
 void EstimatorRos::onImu(const sensor_msgs::Imu::ConstPtr& message) {
+  const std::optional<ImuSample> sample = tryFromMsg(*message);
+  if (!sample) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last_imu_ = ros::WallTime::now();
+  }
+  if (!joiner_) return takeSample(*sample);
+  const std::lock_guard<std::mutex> lock(joiner_mutex_);
+  joiner_->addGyroscope(sample->stamp, sample->angular_velocity);
+  takeJoinedSamples();
+}
+
+void EstimatorRos::onAcceleration(const sensor_msgs::Imu::ConstPtr& message) {
+  const std::optional<ImuSample> sample = tryFromMsg(*message);
+  if (!sample) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last_acceleration_ = ros::WallTime::now();
+  }
+  const std::lock_guard<std::mutex> lock(joiner_mutex_);
+  joiner_->addAccelerometer(sample->stamp, sample->acceleration);
+  takeJoinedSamples();
+}
+
+void EstimatorRos::takeJoinedSamples() {
+  while (const std::optional<ImuSample> sample = joiner_->next()) takeSample(*sample);
   Input input;
-  input.imu = tryFromMsg(*message);
-  if (!input.imu) return;
+  input.events = joiner_->takeEvents();
+  if (!input.events.empty()) push(std::move(input));
+}
+
+void EstimatorRos::takeSample(const ImuSample& sample) {
+  Input input;
+  input.imu = sample;
   {
     const std::lock_guard<std::mutex> lock(propagator_mutex_);
-    const std::optional<PropagatedState> state = propagator_.addImu(*input.imu);
+    const std::optional<PropagatedState> state = propagator_.addImu(sample);
     if (state) publisher_.publish(*state);
   }
   push(std::move(input));
@@ -127,7 +170,6 @@ bool EstimatorRos::onReset(std_srvs::Trigger::Request& /*request*/,
 void EstimatorRos::push(Input input) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (input.imu) last_imu_ = ros::WallTime::now();
     if (input.frame) {
       last_frame_ = ros::WallTime::now();
       // Falling behind for good: new frames are left out, the IMU goes on.
@@ -160,6 +202,7 @@ void EstimatorRos::work() {
 
 void EstimatorRos::handle(Input* input) {
   if (input->restart) restart();
+  if (!input->events.empty()) handle(input->events);
   if (input->imu) estimator_.addImu(*input->imu);
   if (input->match) estimator_.addLoopMatch(*input->match);
   if (input->frame) {
@@ -179,7 +222,12 @@ void EstimatorRos::handle(const std::vector<Event>& events) {
   for (const Event& event : events) log(event);
   publisher_.publish(events);
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const Event& event : events) recent_.push_back(event);
+  for (const Event& event : events) {
+    recent_.push_back(event);
+    if (!isInputFinding(event)) continue;
+    finding_ = event.text;
+    finding_time_ = ros::WallTime::now();
+  }
   while (recent_.size() > kRecentEvents) recent_.pop_front();
 }
 
@@ -210,6 +258,10 @@ std::string EstimatorRos::missingInput() const {
     return "no IMU sample yet on " + imu_.getTopic() +
            ": does the IMU or the bag run, is imu_topic right? (rostopic hz)";
   }
+  if (joiner_ && last_acceleration_.isZero()) {
+    return "no accelerometer sample yet on " + acceleration_.getTopic() +
+           ": is accel_topic right, is the accelerometer switched on? (rostopic hz)";
+  }
   if (last_frame_.isZero()) {
     return "no features yet on " + features_.getTopic() + ": does feature_tracker run?";
   }
@@ -217,11 +269,20 @@ std::string EstimatorRos::missingInput() const {
     return "IMU samples have stopped on " + imu_.getTopic() +
            ": has the bag ended, has the IMU's driver stopped?";
   }
+  if (joiner_ && (now - last_acceleration_).toSec() > kSilence) {
+    return "accelerometer samples have stopped on " + acceleration_.getTopic() +
+           ": has the bag ended, has the driver stopped?";
+  }
   if ((now - last_frame_).toSec() > kSilence) {
     return "features have stopped on " + features_.getTopic() +
            ": have images stopped, or feature_tracker?";
   }
   return "";
+}
+
+std::string EstimatorRos::inputFinding() const {
+  const bool is_old = (ros::WallTime::now() - finding_time_).toSec() > kFindingLasts;
+  return is_old ? "" : finding_;
 }
 
 std::string EstimatorRos::waitingReason() const {
@@ -233,6 +294,11 @@ std::string EstimatorRos::waitingReason() const {
 
 void EstimatorRos::summarize(diagnostic_updater::DiagnosticStatusWrapper* status) {
   using diagnostic_msgs::DiagnosticStatus;
+  // Bad inputs come first: they are why the rest fails.
+  const std::string finding = inputFinding();
+  if (latest_.status != EstimatorStatus::kTracking && !finding.empty()) {
+    return status->summary(DiagnosticStatus::WARN, finding);
+  }
   const std::string missing = missingInput();
   if (!missing.empty()) return status->summary(DiagnosticStatus::WARN, missing);
   if (latest_.status == EstimatorStatus::kTracking) {

@@ -16,6 +16,7 @@
 
 #include "estimator_publisher.h"
 #include "feature_numbering.h"
+#include "vins_core/imu_joiner.h"
 #include "vins_estimator/estimator.h"
 #include "vins_estimator/inertial/propagator.h"
 #include "vins_msgs/FeatureFrame.h"
@@ -45,6 +46,7 @@ class EstimatorRos {
     std::optional<FeatureFrame> frame;
     std::optional<LoopMatch> match;
     bool restart = false;
+    std::vector<Event> events;  ///< findings about the inputs
   };
 
   /// What diagnostics show of a result.
@@ -59,11 +61,14 @@ class EstimatorRos {
   EstimatorRos(ros::NodeHandle node, ros::NodeHandle private_node,
                const vins_msgs::NodeConfiguration& configuration);
   void onImu(const sensor_msgs::Imu::ConstPtr& message);
+  void onAcceleration(const sensor_msgs::Imu::ConstPtr& message);
   void onFeatures(const vins_msgs::FeatureFrame::ConstPtr& message);
   void onLoopMatch(const vins_msgs::LoopMatch::ConstPtr& message);
   void onRestart(const std_msgs::Bool::ConstPtr& message);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
+  void takeSample(const ImuSample& sample);
+  void takeJoinedSamples();
   void push(Input input);
   void work();
   void handle(Input* input);
@@ -75,11 +80,16 @@ class EstimatorRos {
   void summarize(diagnostic_updater::DiagnosticStatusWrapper* status);
   std::string missingInput() const;
   std::string waitingReason() const;
+  /// What is wrong with the inputs, where that was found lately; empty otherwise.
+  std::string inputFinding() const;
 
   EstimatorOptions options_;
   Estimator estimator_;  // the worker's alone
   EstimatorPublisher publisher_;
   FeatureNumbering numbering_;  // of the features' callback
+
+  std::mutex joiner_mutex_;
+  std::optional<ImuJoiner> joiner_;  // where the accelerometer has a topic of its own
 
   std::mutex propagator_mutex_;
   Propagator propagator_;
@@ -89,14 +99,16 @@ class EstimatorRos {
   std::deque<Input> queue_;
   std::size_t frames_waiting_ = 0;
   std::size_t frames_dropped_ = 0;
-  std::size_t frames_dropped_told_ = 0;  // in the last diagnostics
-  ros::WallTime last_imu_, last_frame_;  // of arrival; zero: none yet
+  std::size_t frames_dropped_told_ = 0;                      // in the last diagnostics
+  ros::WallTime last_imu_, last_acceleration_, last_frame_;  // of arrival; zero: none yet
   bool stopping_ = false;
   Figures latest_;
   std::deque<Event> recent_;
+  std::string finding_;  // about the inputs, the latest
+  ros::WallTime finding_time_;
 
   diagnostic_updater::Updater diagnostics_;
-  ros::Subscriber imu_, features_, matches_, restarts_;
+  ros::Subscriber imu_, acceleration_, features_, matches_, restarts_;
   ros::ServiceServer reset_;
   ros::Timer timer_;
   std::thread worker_;

@@ -112,7 +112,7 @@ class AslFolderRecording : public Recording {
     }
   }
 
-  std::variant<ImuSample, RecordedImage, RecordedTruth> dataOf(const ScheduledMessage& message) {
+  decltype(Record::data) dataOf(const ScheduledMessage& message) {
     if (message.stream == kImu) return folder_.imu[message.index];
     if (message.stream == kTruth) {
       const StampedPose& pose = folder_.ground_truth.poses()[message.index];

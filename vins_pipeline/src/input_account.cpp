@@ -9,6 +9,10 @@ namespace vins::pipeline {
 
 void InputAccount::addImu(Stamp stamp) { last_imu_ = std::max(stamp, last_imu_.value_or(stamp)); }
 
+void InputAccount::addAcceleration(Stamp stamp) {
+  last_acceleration_ = std::max(stamp, last_acceleration_.value_or(stamp));
+}
+
 void InputAccount::addImage(Stamp stamp) {
   ++accepted_;
   first_image_ = std::min(stamp, first_image_.value_or(stamp));
@@ -37,10 +41,12 @@ void InputAccount::requireImages() const {
 
 std::optional<Stamp> InputAccount::imuEnd() const {
   constexpr Stamp kTolerance = 500'000'000;  // [ns]
-  if (!last_imu_ || !last_image_ || *last_image_ <= *last_imu_ + kTolerance) return std::nullopt;
+  if (!last_imu_ || !last_image_) return std::nullopt;
+  const Stamp end = std::min(*last_imu_, last_acceleration_.value_or(*last_imu_));
+  if (*last_image_ <= end + kTolerance) return std::nullopt;
   // Clocks that are apart are another finding.
-  if (*first_image_ > *last_imu_ + kTolerance) return std::nullopt;
-  return last_imu_;
+  if (*first_image_ > end + kTolerance) return std::nullopt;
+  return end;
 }
 
 std::string InputAccount::problems(const RecordingSummary& recording) const {

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "camera_model/rig.h"
 #include "feature_tracker/mask_file.h"
 #include "vins_core/input_error.h"
 
@@ -52,9 +51,10 @@ void addPart(const char* stage, double seconds, PipelineResult* result) {
 
 }  // namespace
 
-PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings) {
+PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings,
+                                    const camera_model::CameraInfoReader& read_camera_info) {
   const Parameters parameters = Parameters::load(path);
-  const camera_model::Rig rig = camera_model::readRig(parameters);
+  const camera_model::Rig rig = camera_model::readRig(parameters, read_camera_info);
   const camera_model::RigCamera& camera = rig.cameras.front();
   PipelineOptions options;
   options.cameras = {camera.camera};
@@ -64,7 +64,11 @@ PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::st
       feature_tracker::readMaskFile(options.tracker.mask_file, camera.camera->imageSize());
   std::vector<std::string> remarks = rig.warnings;
   options.imu_topic = recordedTopic(rig.imu.topic, options.imu_topic, &remarks);
+  if (!rig.imu.accel_topic.empty()) {
+    options.accel_topic = recordedTopic(rig.imu.accel_topic, "", &remarks);
+  }
   options.image_topics[0] = recordedTopic(camera.image_topic, options.image_topics[0], &remarks);
+  if (!camera.is_from_topic) options.camera_info_topic = camera.camera_info_topic;
   options.loops = pose_graph::readPoseGraphConfiguration(parameters);
   if (options.loops.is_on && options.loops.loads_map) options.map = options.loops.map_file;
   // Of VINS-Mono, and of no meaning here.
@@ -84,6 +88,7 @@ Pipeline::Pipeline(const PipelineOptions& options)
       recent_images_(kRecentImages),
       pictures_(makePictures(options.loops)),
       gyroscope_(options.estimator.td) {
+  if (!options.accel_topic.empty()) joiner_.emplace();
   if (options.map.empty()) return;
   if (!pose_graph_) throw InputError(options.map + ": a map needs loop closing, which is off");
   loaded_map_ = pose_graph_->load(options.map, pictures_ ? &*pictures_ : nullptr);
@@ -97,7 +102,25 @@ std::size_t Pipeline::saveMap(const std::string& path) {
 
 void Pipeline::addImu(const ImuSample& sample) {
   gyroscope_.add(sample);
-  estimator_.addImu(sample);
+  if (!joiner_) return estimator_.addImu(sample);
+  joiner_->addGyroscope(sample.stamp, sample.angular_velocity);
+  addJoinedSamples();
+}
+
+void Pipeline::addAcceleration(Stamp stamp, const Eigen::Vector3d& acceleration) {
+  if (!joiner_) return;
+  joiner_->addAccelerometer(stamp, acceleration);
+  addJoinedSamples();
+}
+
+void Pipeline::addJoinedSamples() {
+  while (const std::optional<ImuSample> sample = joiner_->next()) estimator_.addImu(*sample);
+}
+
+std::vector<Event> Pipeline::takeInputEvents() {
+  std::vector<Event> events = estimator_.takeInputEvents();
+  if (joiner_) append(&events, joiner_->takeEvents());
+  return events;
 }
 
 void Pipeline::addImage(Stamp stamp, const cv::Mat& image) {

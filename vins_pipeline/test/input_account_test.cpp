@@ -41,6 +41,17 @@ TEST(InputAccount, KnowsWhenTheImuEnded) {
   EXPECT_EQ(account.imuEnd(), 10 * kSecond);
 }
 
+TEST(InputAccount, TheImuEndsWithTheFirstOfItsPartsToEnd) {
+  InputAccount account;
+  account.addImage(9 * kSecond);
+  account.addAcceleration(10 * kSecond);
+  account.addImu(12 * kSecond);
+  account.addImage(12 * kSecond);
+  EXPECT_EQ(account.imuEnd(), 10 * kSecond);
+  account.addAcceleration(12 * kSecond);
+  EXPECT_FALSE(account.imuEnd());
+}
+
 TEST(InputAccount, ClocksThatAreApartAreNoEnd) {
   InputAccount account;
   account.addImu(10 * kSecond);

@@ -86,6 +86,54 @@ TEST(Pipeline, WhatComesOutDoesNotDependOnWhenItCameIn) {
   }
 }
 
+TEST(Pipeline, AnAccelerometerOnATopicOfItsOwnGivesTheSameOdometry) {
+  PipelineOptions parted_options = options();
+  parted_options.accel_topic = "/accel";
+  Pipeline whole(options()), parted(parted_options);
+  std::vector<PipelineResult> first, second;
+  for (int i = 0; i <= 600; ++i) {
+    const ImuSample sample = sampleAt(kStart + i * 5 * kMs);
+    whole.addImu(sample);
+    parted.addImu({sample.stamp, {0.0, 0.0, 0.0}, sample.angular_velocity});
+    // A third of the rate: the samples between are interpolated.
+    if (i % 3 == 0) parted.addAcceleration(sample.stamp, sample.acceleration);
+    if (i % 10 != 0) continue;
+    whole.addImage(sample.stamp, imageAt(0));
+    parted.addImage(sample.stamp, imageAt(0));
+    for (PipelineResult& result : processAll(&whole)) first.push_back(std::move(result));
+    for (PipelineResult& result : processAll(&parted)) second.push_back(std::move(result));
+  }
+  ASSERT_EQ(first.size(), second.size());
+  std::vector<Pose> poses, parted_poses;
+  for (const PipelineResult& result : first) {
+    for (const auto& estimate : result.estimates) {
+      if (estimate.odometry) poses.push_back(estimate.odometry->state.T_wb);
+    }
+  }
+  for (const PipelineResult& result : second) {
+    for (const auto& estimate : result.estimates) {
+      if (estimate.odometry) parted_poses.push_back(estimate.odometry->state.T_wb);
+    }
+  }
+  ASSERT_GT(poses.size(), 10u) << "a rig at rest starts";
+  ASSERT_EQ(parted_poses.size(), poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(parted_poses[i].position, poses[i].position);
+    EXPECT_EQ(parted_poses[i].rotation.coeffs(), poses[i].rotation.coeffs());
+  }
+  EXPECT_TRUE(parted.takeInputEvents().size() == whole.takeInputEvents().size());
+}
+
+TEST(Pipeline, ASilentAccelerometerIsTold) {
+  PipelineOptions parted_options = options();
+  parted_options.accel_topic = "/accel";
+  Pipeline pipeline(parted_options);
+  for (int i = 0; i <= 220; ++i) pipeline.addImu(sampleAt(kStart + i * 5 * kMs));
+  const std::vector<Event> events = pipeline.takeInputEvents();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].code, "imu_accelerometer_missing");
+}
+
 TEST(Pipeline, AtTheEndImagesNoLongerWait) {
   Pipeline pipeline(options());
   pipeline.addImage(kStart, imageAt(0));

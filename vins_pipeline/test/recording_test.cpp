@@ -114,6 +114,37 @@ TEST_F(RecordingTest, ABagIsReadInTheOrderOfItsStamps) {
   EXPECT_EQ(cv::norm(contents.images[0].load(), contents.images[9].load(), cv::NORM_INF), 0.0);
 }
 
+TEST_F(RecordingTest, AnAccelerometerMayHaveATopicOfItsOwn) {
+  writeBag(path("parted.bag"));
+  {
+    rosbag::Bag bag(path("parted.bag"), rosbag::bagmode::Append);
+    for (int i = 0; i <= 125; ++i) {
+      sensor_msgs::Imu message;
+      message.header.stamp = vins_msgs::toRosTime(kStart + i * 16 * kMs);
+      message.linear_acceleration.x = i;
+      bag.write("/accel", message.header.stamp, message);
+    }
+  }
+  RecordingSelection selection;
+  selection.accel_topic = "/accel";
+  const auto recording = openRecording(path("parted.bag"), selection);
+  EXPECT_EQ(recording->summary().imu_samples, 401u) << "the gyroscope's";
+  std::vector<RecordedAcceleration> readings;
+  Stamp before = 0;
+  while (const auto record = recording->next()) {
+    const Stamp stamp = std::visit([](const auto& data) { return data.stamp; }, record->data);
+    EXPECT_GE(stamp, before);
+    before = stamp;
+    const auto* reading = std::get_if<RecordedAcceleration>(&record->data);
+    if (reading != nullptr) readings.push_back(*reading);
+  }
+  ASSERT_EQ(readings.size(), 126u);
+  EXPECT_EQ(readings[10].stamp, kStart + 160 * kMs);
+  EXPECT_EQ(readings[10].acceleration.x(), 10.0);
+  selection.accel_topic = "/nobody";
+  EXPECT_TRUE(contains(messageOf(path("parted.bag"), selection), "has no topic '/nobody'"));
+}
+
 TEST_F(RecordingTest, ASpanIsCutOut) {
   writeBag(path("a.bag"));
   RecordingSelection selection;

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <rosbag/bag.h>
+#include <sensor_msgs/CameraInfo.h>
 #include <sys/wait.h>
 
 #include "vins_core/parameters.h"
@@ -73,6 +75,33 @@ class RunBag : public ::testing::Test {
   fs::path folder_ = fs::path(::testing::TempDir()) / "run_bag_test";
 };
 
+/// Adds a message of EuRoC's left camera to a bag, with this model of its distortion.
+void addCameraInfo(const std::string& path, const std::string& distortion_model) {
+  sensor_msgs::CameraInfo info;
+  info.width = 752;
+  info.height = 480;
+  info.distortion_model = distortion_model;
+  info.K = {458.654, 0, 367.215, 0, 457.296, 248.375, 0, 0, 1};
+  info.D = {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0};
+  rosbag::Bag bag(path, rosbag::bagmode::Append);
+  bag.write("/cam0/camera_info", ros::Time(1'600'000'000, 0), info);
+}
+
+/// EuRoC's configuration with camera_info_topic, and without its camera where that is wanted.
+std::string withCameraInfo(bool keeps_camera) {
+  std::istringstream lines(textOf(kConfig));
+  std::string text, line;
+  bool is_camera = false;
+  while (std::getline(lines, line)) {
+    if (line.rfind("   ", 0) != 0) {
+      is_camera = line.rfind("model_type", 0) == 0 || line.rfind("projection_parameters", 0) == 0 ||
+                  line.rfind("distortion_parameters", 0) == 0;
+    }
+    if (keeps_camera || !is_camera) text += line + "\n";
+  }
+  return text + "camera_info_topic: /cam0/camera_info\n";
+}
+
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
@@ -90,6 +119,42 @@ TEST_F(RunBag, ARecordingTooShortToStartIsToldByTheExitCodeAndWrittenAllTheSame)
   const Parameters timing = Parameters::load((out / "timing.json").string());
   EXPECT_EQ(timing.section("stages").section("tracker").integer("count"), 6);
   EXPECT_NEAR(timing.number("data_seconds"), 0.25, 1e-6);
+}
+
+TEST_F(RunBag, TakesTheIntrinsicsThatTheFileLacksFromCameraInfo) {
+  const std::string bag = writeBag("info.bag");
+  addCameraInfo(bag, "plumb_bob");
+  std::ofstream(path("no_camera.yaml")) << withCameraInfo(false);
+  const std::string config = path("no_camera.yaml").string();
+  const Outcome outcome = run(config + " " + bag + " --out " + path("out").string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "6 images, 51 IMU samples")) << outcome.output;
+  const Outcome no_topic = run(config + " " + writeBag("a.bag") + " --out " + path("o").string());
+  EXPECT_EQ(no_topic.exit_code, 1);
+  EXPECT_TRUE(contains(no_topic.output, "has no topic '/cam0/camera_info'")) << no_topic.output;
+  const std::string unknown = writeBag("unknown.bag");
+  addCameraInfo(unknown, "thin_prism");
+  const Outcome refused = run(config + " " + unknown + " --out " + path("o").string());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(contains(refused.output,
+                       "/cam0/camera_info: camera_info: distortion_model is 'thin_prism'; allowed"))
+      << refused.output;
+}
+
+TEST_F(RunBag, WarnsWhereTheFilesCameraIsNotThatOfCameraInfo) {
+  const std::string bag = writeBag("info.bag");
+  addCameraInfo(bag, "plumb_bob");
+  const std::string out = " --out " + path("out").string();
+  std::string text = withCameraInfo(true);
+  std::ofstream(path("same.yaml")) << text;
+  const Outcome same = run(path("same.yaml").string() + " " + bag + out);
+  EXPECT_FALSE(contains(same.output, "differs from")) << same.output;
+  text.replace(text.find("fx: 4"), 5, "fx: 5");
+  std::ofstream(path("other.yaml")) << text;
+  const Outcome other = run(path("other.yaml").string() + " " + bag + out);
+  EXPECT_EQ(other.exit_code, 2) << other.output;
+  EXPECT_TRUE(contains(other.output, "differs from that of /cam0/camera_info (752 x 480, fx 458"))
+      << other.output;
 }
 
 TEST_F(RunBag, DrawsTheTracksOfOneImage) {

@@ -15,12 +15,14 @@
 #include <geometry_msgs/TransformStamped.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
+#include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
 #include <std_msgs/Header.h>
 
 #include "vins_core/input_error.h"
+#include "vins_msgs/camera_info.h"
 #include "vins_msgs/conversions.h"
 #include "vins_msgs/image_converter.h"
 #include "vins_pipeline/stamp_order.h"
@@ -32,6 +34,7 @@ using Types = std::map<std::string, std::string>;  ///< of the bag's topics
 
 constexpr char kImage[] = "sensor_msgs/Image";
 constexpr char kCompressed[] = "sensor_msgs/CompressedImage";
+constexpr char kCameraInfo[] = "sensor_msgs/CameraInfo";
 constexpr char kImu[] = "sensor_msgs/Imu";
 constexpr char kPose[] = "geometry_msgs/PoseStamped";
 constexpr char kTransform[] = "geometry_msgs/TransformStamped";
@@ -103,6 +106,10 @@ class BagRecording : public Recording {
     types_ = typesOf(bag_);
     requireTopic(path, types_, selection.imu_topic, {kImu});
     std::vector<std::string> topics = {selection.imu_topic};
+    if (!selection.accel_topic.empty()) {
+      requireTopic(path, types_, selection.accel_topic, {kImu});
+      topics.push_back(selection.accel_topic);
+    }
     for (std::string& topic : selection_.image_topics) {
       if (types_.count(topic) == 0 && types_.count(topic + "/compressed") > 0) {
         topic += "/compressed";
@@ -132,7 +139,7 @@ class BagRecording : public Recording {
   }
 
  private:
-  using Data = std::variant<ImuSample, RecordedImage, RecordedTruth>;
+  using Data = decltype(Record::data);
 
   /// Reads all header stamps once, as far as the bag can be read.
   void index() {
@@ -155,7 +162,9 @@ class BagRecording : public Recording {
   }
 
   StampOrder::Stream streamOf(const std::string& topic) const {
-    if (topic == selection_.imu_topic) return StampOrder::Stream::kImu;
+    if (topic == selection_.imu_topic || topic == selection_.accel_topic) {
+      return StampOrder::Stream::kImu;
+    }
     return topic == truth_topic_ ? StampOrder::Stream::kTruth : StampOrder::Stream::kImage;
   }
 
@@ -199,6 +208,10 @@ class BagRecording : public Recording {
   Data dataOf(const rosbag::MessageInstance& instance) {
     const std::string& topic = instance.getTopic();
     if (topic == selection_.imu_topic) return vins_msgs::fromMsg(*read<sensor_msgs::Imu>(instance));
+    if (topic == selection_.accel_topic) {
+      const ImuSample sample = vins_msgs::fromMsg(*read<sensor_msgs::Imu>(instance));
+      return RecordedAcceleration{sample.stamp, sample.acceleration};
+    }
     if (topic == truth_topic_) return truthOf(instance);
     return imageOf(instance);
   }
@@ -262,17 +275,47 @@ class BagRecording : public Recording {
 
 }  // namespace
 
-std::unique_ptr<Recording> openBagRecording(const std::string& path,
-                                            const RecordingSelection& selection) {
-  selection.validate();
+namespace {
+
+/// Calls `open`, and says in words what kept a bag from being read.
+template <typename Open>
+auto explainingFailure(const std::string& path, Open open) -> decltype(open()) {
   try {
-    return std::make_unique<BagRecording>(path, selection);
+    return open();
   } catch (const rosbag::BagUnindexedException&) {
     throw InputError(path + ": has no index, because its recording did not end in order; run " +
                      "'rosbag reindex' on it");
   } catch (const rosbag::BagException& error) {
     throw InputError(path + ": cannot be read as a bag: " + error.what());
   }
+}
+
+}  // namespace
+
+std::unique_ptr<Recording> openBagRecording(const std::string& path,
+                                            const RecordingSelection& selection) {
+  selection.validate();
+  return explainingFailure(path, [&]() -> std::unique_ptr<Recording> {
+    return std::make_unique<BagRecording>(path, selection);
+  });
+}
+
+std::unique_ptr<camera_model::Camera> readCameraInfo(const std::string& path,
+                                                     const std::string& topic) {
+  const std::string recorded = topic.rfind('/', 0) == 0 ? topic : "/" + topic;
+  if (!std::filesystem::is_regular_file(path)) {
+    throw InputError(path + ": is no bag, which camera_info_topic '" + topic +
+                     "' needs; allowed: the intrinsics in the file (model_type, ...)");
+  }
+  return explainingFailure(path, [&] {
+    const rosbag::Bag bag(path, rosbag::bagmode::Read);
+    requireTopic(path, typesOf(bag), recorded, {kCameraInfo});
+    rosbag::View view(bag, rosbag::TopicQuery(recorded));
+    const auto message =
+        view.size() > 0 ? view.begin()->instantiate<sensor_msgs::CameraInfo>() : nullptr;
+    if (!message) throw InputError(path + ": has no message that can be read on " + recorded);
+    return vins_msgs::cameraOf(*message, path + ": " + recorded);
+  });
 }
 
 std::unique_ptr<Recording> openRecording(const std::string& path,

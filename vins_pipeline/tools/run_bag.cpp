@@ -14,6 +14,7 @@
 #include <boost/program_options.hpp>
 #include <opencv2/core.hpp>
 
+#include "recording_options.h"
 #include "run_maps.h"
 #include "support_files.h"
 #include "track_picture.h"
@@ -60,6 +61,7 @@ vins::pipeline::RecordingSelection selectionOf(const po::variables_map& values,
                                                const vins::pipeline::PipelineOptions& options) {
   vins::pipeline::RecordingSelection selection;
   selection.imu_topic = options.imu_topic;
+  selection.accel_topic = options.accel_topic;
   selection.image_topics = options.image_topics;
   selection.start = values["start"].as<double>();
   if (values.count("duration") > 0) selection.duration = values["duration"].as<double>();
@@ -67,9 +69,9 @@ vins::pipeline::RecordingSelection selectionOf(const po::variables_map& values,
 }
 
 vins::pipeline::PipelineOptions readConfig(const po::variables_map& values) {
-  const std::string path = values["config"].as<std::string>();
   std::vector<std::string> warnings;
-  vins::pipeline::PipelineOptions options = vins::pipeline::readPipelineOptions(path, &warnings);
+  vins::pipeline::PipelineOptions options = vins::pipeline::readOptionsForRecording(
+      values["config"].as<std::string>(), values["bag"].as<std::string>(), &warnings);
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
   // The result must not depend on the computer's speed.
   options.estimator.max_solver_time = 0.0;
@@ -116,11 +118,15 @@ void feedImage(const vins::pipeline::RecordedImage& image, vins::pipeline::Pipel
 }
 
 void feed(const vins::pipeline::Record& message, vins::pipeline::Pipeline* pipeline, Run* run) {
+  using vins::pipeline::RecordedAcceleration;
   if (const auto* sample = std::get_if<vins::ImuSample>(&message.data)) {
     run->inputs.addImu(sample->stamp);
     pipeline->addImu(*sample);
   } else if (const auto* truth = std::get_if<vins::pipeline::RecordedTruth>(&message.data)) {
     run->results.add(*truth);
+  } else if (const auto* reading = std::get_if<RecordedAcceleration>(&message.data)) {
+    run->inputs.addAcceleration(reading->stamp);
+    pipeline->addAcceleration(reading->stamp, reading->acceleration);
   } else {
     feedImage(std::get<vins::pipeline::RecordedImage>(message.data), pipeline, run);
   }

@@ -42,7 +42,7 @@ struct ImageSize {
 };
 
 /// No model has more intrinsic parameters than this.
-constexpr int kMaxCameraParameters = 10;
+constexpr int kMaxCameraParameters = 12;
 
 using CameraParameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxCameraParameters, 1>;
 

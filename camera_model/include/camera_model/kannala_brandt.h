@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "camera_model/camera.h"
-#include "camera_model/radial_polynomial.h"
+#include "camera_model/radial_distortion.h"
 
 namespace vins::camera_model {
 
@@ -31,7 +31,7 @@ class KannalaBrandt : public Camera {
  private:
   CameraParameters parameters_;
   double mu_, mv_, u0_, v0_;
-  RadialPolynomial radial_;  ///< of the angle from the axis [rad]
+  RadialDistortion radial_;  ///< of the angle from the axis [rad]
 };
 
 }  // namespace vins::camera_model

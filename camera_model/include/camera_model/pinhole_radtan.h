@@ -10,9 +10,11 @@
 namespace vins::camera_model {
 
 /// Pinhole camera with radial and tangential distortion, as OpenCV's calib3d has it.
-/// Parameters: fx, fy, cx, cy [px], k1, k2, p1, p2, k3 [-].
+/// Parameters: fx, fy, cx, cy [px], k1, k2, p1, p2, k3 [-]; with rational distortion (OpenCV's
+/// CALIB_RATIONAL_MODEL, ROS's rational_polynomial) also k4, k5, k6 [-].
 class PinholeRadtan : public Camera {
  public:
+  /// Nine parameters, or twelve with rational distortion.
   PinholeRadtan(const std::string& name, ImageSize size, const CameraParameters& parameters);
 
   CameraModel model() const override { return CameraModel::kPinhole; }
@@ -26,6 +28,7 @@ class PinholeRadtan : public Camera {
   std::unique_ptr<Camera> scaledTo(ImageSize size) const override;
 
  private:
+  int count_;  ///< of parameters
   double fx_, fy_, cx_, cy_;
   RadtanDistortion distortion_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct RigCamera {
   std::shared_ptr<const Camera> camera;
   std::string image_topic;        ///< sensor_msgs/Image; empty where the file names none
   std::string camera_info_topic;  ///< sensor_msgs/CameraInfo; empty where the file names none
+  bool is_from_topic = false;     ///< the file has no intrinsics, the topic gave them
   Pose T_bc;              ///< camera in the body frame; identity where the file does not give it
   double td = 0.0;        ///< time offset, t_imu = t_cam + td [s]
   double readout = 0.0;   ///< time in which all rows are read, rolling shutter; 0: global [s]
@@ -37,9 +39,11 @@ enum class ImuNoiseUnit {
 
 /// The inertial sensor of a rig. The body frame is the IMU's.
 struct RigImu {
-  std::string topic;        ///< sensor_msgs/Imu; empty where the file names none
-  std::string accel_topic;  ///< of an accelerometer with a topic of its own; empty: none
-  ImuNoise noise;           ///< always densities
+  std::string topic;  ///< sensor_msgs/Imu; empty where the file names none
+  /// sensor_msgs/Imu of an accelerometer with a topic of its own: `topic` is then the gyroscope's.
+  /// Empty: both come on `topic`.
+  std::string accel_topic;
+  ImuNoise noise;                              ///< always densities
   ImuNoiseUnit unit = ImuNoiseUnit::kDensity;  ///< of the figures in the file
   double rate = 200.0;                         ///< [Hz]
 };
@@ -58,6 +62,10 @@ struct Rig {
   bool rotationIsKnown() const { return extrinsic != ExtrinsicMode::kUnknown; }
 };
 
+/// Returns the camera that a topic of sensor_msgs/CameraInfo describes. Throws InputError where
+/// there is none.
+using CameraInfoReader = std::function<std::shared_ptr<const Camera>(const std::string& topic)>;
+
 /// Reads the rig of a configuration file, in any of these forms:
 ///
 /// - VINS-Mono's: the camera in the file itself, extrinsicRotation and extrinsicTranslation.
@@ -73,9 +81,10 @@ struct Rig {
 /// A key at the top of the file goes before the same thing in a section. Rotations that are off by
 /// up to 3 degrees are taken to the nearest rotation, noise of zero is raised to a floor, and what
 /// a Kalibr or OpenVINS file lacks gets a default, each with a warning. Marks the keys that it
-/// reads, or that other programs read and this one does not, as known to `parameters`. Throws
-/// InputError naming file, key, what was found and what is allowed.
-Rig readRig(const Parameters& parameters);
+/// reads, or that other programs read and this one does not, as known to `parameters`. Where the
+/// file has no intrinsics of the first camera but names a camera_info_topic, `read_camera_info`
+/// gives them. Throws InputError naming file, key, what was found and what is allowed.
+Rig readRig(const Parameters& parameters, const CameraInfoReader& read_camera_info = nullptr);
 
 /// The same of the file at `path`.
 Rig readRigFile(const std::string& path);

@@ -52,7 +52,7 @@ void ImuPlausibility::judgeAccelerometer(Stamp now) {
     report(now, "imu_accelerometer_silent",
            "the accelerometer gives " + values +
                " in every sample: does the driver fill linear_acceleration, or does it come on a "
-               "topic of its own?",
+               "topic of its own (accel_topic)?",
            figures);
   }
   if (mean == 0.0) return;
@@ -80,7 +80,7 @@ void ImuPlausibility::judgeGyroscope(Stamp now) {
     report(now, "imu_gyroscope_silent",
            "the gyroscope gives " + values +
                " in every sample: does the driver fill angular_velocity, or does it come on a "
-               "topic of its own?",
+               "topic of its own (imu_topic is then the gyroscope's, accel_topic the other's)?",
            {{"mean_rate", mean}});
   }
   if (mean < options_.max_mean_rate && window_.rate_max < options_.max_rate) return;

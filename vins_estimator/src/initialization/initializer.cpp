@@ -119,13 +119,14 @@ std::optional<Initialization> Initializer::startAtRest() const {
 }
 
 std::optional<Initialization> Initializer::startMoving() {
-  reason_ = explainFewTracks(static_cast<int>(buffer_.back()->frame.observations.size()));
+  const InputFigures inputs = figuresOf(buffer_);
+  reason_ = explainFewTracks(inputs);
   for (const FrameIndices& chosen : chooseFrames()) {
     const std::vector<Preintegration> imu = integrateBetween(chosen);
     const VisualStructure structure = buildStructure(
         structureFrames(chosen, imu), options_.pixel_noise, options_.structure, engine_());
-    if (structure.ok()) return alignFrames(chosen, structure, imu);
-    reason_ = explain(structure);
+    if (structure.ok()) return alignFrames(chosen, structure, imu, inputs);
+    reason_ = explain(structure, inputs);
     // Over a shorter span more features stay in view, but there is less parallax.
     if (structure.status == StructureStatus::kLittleParallax) break;
   }
@@ -203,10 +204,11 @@ std::vector<StructureFrame> Initializer::structureFrames(
 
 std::optional<Initialization> Initializer::alignFrames(const FrameIndices& chosen,
                                                        const VisualStructure& structure,
-                                                       const std::vector<Preintegration>& imu) {
+                                                       const std::vector<Preintegration>& imu,
+                                                       const InputFigures& inputs) {
   const Alignment alignment = align(structure, imu, options_.T_bc, options_.alignment);
   if (alignment.ok()) return toInitialization(chosen, alignment);
-  reason_ = explain(alignment);
+  reason_ = explain(alignment, inputs);
   return std::nullopt;
 }
 

@@ -17,6 +17,7 @@ namespace vins::pipeline {
 class InputAccount {
  public:
   void addImu(Stamp stamp);
+  void addAcceleration(Stamp stamp);  ///< of an accelerometer with a topic of its own
   void addImage(Stamp stamp);
 
   /// An image that cannot be used, and why: an event `image_refused`. Throws InputError with
@@ -32,8 +33,8 @@ class InputAccount {
   /// Throws InputError with the first reason where every image has been refused.
   void requireImages() const;
 
-  /// When the IMU ended, where images of its time go on for more than half a second behind that
-  /// [ns].
+  /// When the IMU, or a part of it with a topic of its own, ended, where images of its time go on
+  /// for more than half a second behind that [ns].
   std::optional<Stamp> imuEnd() const;
 
   /// Lines for a summary: damage, refused images, an IMU that ended early; empty where all is well.
@@ -46,7 +47,7 @@ class InputAccount {
   std::size_t accepted_ = 0;
   std::size_t refused_ = 0;
   std::string first_reason_;
-  std::optional<Stamp> last_imu_, first_image_, last_image_;
+  std::optional<Stamp> last_imu_, last_acceleration_, first_image_, last_image_;
   std::map<std::string, std::string> reasons_;  ///< by the event's code
 };
 

@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "camera_model/camera.h"
+#include "camera_model/rig.h"
 #include "feature_tracker/feature_tracker.h"
 #include "feature_tracker/gyroscope_buffer.h"
 #include "feature_tracker/tracker_options.h"
@@ -19,6 +20,7 @@
 #include "vins_core/event.h"
 #include "vins_core/feature_frame.h"
 #include "vins_core/imu.h"
+#include "vins_core/imu_joiner.h"
 #include "vins_core/parameters.h"
 #include "vins_core/pose.h"
 #include "vins_core/time.h"
@@ -36,7 +38,9 @@ struct PipelineOptions {
   estimator::EstimatorOptions estimator;
   cv::Mat mask;  ///< CV_8UC1, 0 where no corner may be; or empty
   std::string imu_topic = "/imu0";
+  std::string accel_topic;  ///< of an accelerometer with a topic of its own; "" for none
   std::vector<std::string> image_topics = {"/cam0/image_raw"};
+  std::string camera_info_topic;  ///< to compare the file's camera with; "" for none
   pose_graph::PoseGraphConfiguration loops;
   pose_graph::PlaceModel places;  ///< empty: no loop closing, whatever `loops` says
   std::string map;                ///< a map file to relocalise in; "" for none
@@ -44,7 +48,10 @@ struct PipelineOptions {
 
 /// Reads a rig's configuration file: camera, tracker, estimator, topics. Throws InputError naming
 /// file and key. `warnings`, which may be null, gets a line for each key that nothing asked for.
-PipelineOptions readPipelineOptions(const std::string& path, std::vector<std::string>* warnings);
+/// `read_camera_info` gives the camera where the file leaves it to camera_info_topic.
+PipelineOptions readPipelineOptions(
+    const std::string& path, std::vector<std::string>* warnings,
+    const camera_model::CameraInfoReader& read_camera_info = nullptr);
 
 /// What came of one image.
 struct PipelineResult {
@@ -68,7 +75,11 @@ class Pipeline {
   /// Throws InputError for bad options, or a map that cannot be read.
   explicit Pipeline(const PipelineOptions& options);
 
+  /// With an accel_topic the sample is the gyroscope's alone.
   void addImu(const ImuSample& sample);
+
+  /// A reading of the accelerometer of accel_topic [ns], [m/s^2].
+  void addAcceleration(Stamp stamp, const Eigen::Vector3d& acceleration);
 
   /// An image of the first camera, CV_8UC1. Beyond 200 that wait for samples the oldest is dropped.
   void addImage(Stamp stamp, const cv::Mat& image);
@@ -78,8 +89,8 @@ class Pipeline {
   std::optional<PipelineResult> process();
 
   /// Findings about the inputs, which come without an image's result too: see
-  /// Estimator::takeInputEvents().
-  std::vector<Event> takeInputEvents() { return estimator_.takeInputEvents(); }
+  /// Estimator::takeInputEvents() and ImuJoiner.
+  std::vector<Event> takeInputEvents();
 
   /// The input has ended: images no longer wait for samples.
   void finish() { finished_ = true; }
@@ -100,6 +111,7 @@ class Pipeline {
     cv::Mat image;
   };
 
+  void addJoinedSamples();
   bool isReady(const WaitingImage& image) const;
   void track(const WaitingImage& image, PipelineResult* result);
   void estimate(PipelineResult* result);
@@ -108,6 +120,7 @@ class Pipeline {
 
   feature_tracker::FeatureTracker tracker_;
   estimator::Estimator estimator_;
+  std::optional<ImuJoiner> joiner_;  ///< where the accelerometer has a topic of its own
   std::unique_ptr<pose_graph::PoseGraph> pose_graph_;
   bool refines_loops_;
   pose_graph::RecentImages<cv::Mat> recent_images_;

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "vins_core/imu.h"
@@ -32,15 +33,23 @@ struct RecordedTruth {
   bool has_rotation = true;
 };
 
+/// A reading of an accelerometer with a topic of its own.
+struct RecordedAcceleration {
+  Stamp stamp = 0;                                         ///< [ns]
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< specific force [m/s^2]
+};
+
 /// One message of a recording.
 struct Record {
   Stamp arrival = 0;  ///< when it was recorded [ns]
-  std::variant<ImuSample, RecordedImage, RecordedTruth> data;
+  /// An ImuSample is the gyroscope's alone where accelerations are recorded apart.
+  std::variant<ImuSample, RecordedImage, RecordedTruth, RecordedAcceleration> data;
 };
 
 /// What to take of a recording.
 struct RecordingSelection {
   std::string imu_topic = "/imu0";
+  std::string accel_topic;  ///< of an accelerometer with a topic of its own; "" for none
   std::vector<std::string> image_topics = {"/cam0/image_raw"};  ///< one per camera
   double start = 0.0;              ///< after the rig's first selected message [s]
   std::optional<double> duration;  ///< [s]; nothing: to the end
@@ -80,8 +89,9 @@ class Recording {
 };
 
 /// A folder in the ASL layout (EuRoC's): topics are /camN/image_raw, at N the topic's own number or
-/// else its place in the selection; the IMU's topic is of no meaning. Images that are listed but
-/// not there are left out. Throws InputError naming what is missing, or a span that holds nothing.
+/// else its place in the selection; the IMU's topics are of no meaning, and its samples are
+/// whole. Images that are listed but not there are left out. Throws InputError naming what is
+/// missing, or a span that holds nothing.
 std::unique_ptr<Recording> openAslRecording(const std::string& folder,
                                             const RecordingSelection& selection);
 

@@ -83,7 +83,8 @@ class Initializer {
   std::optional<Initialization> startMoving();
   std::optional<Initialization> alignFrames(const FrameIndices& chosen,
                                             const VisualStructure& structure,
-                                            const std::vector<Preintegration>& imu);
+                                            const std::vector<Preintegration>& imu,
+                                            const InputFigures& inputs);
   std::vector<FrameIndices> chooseFrames() const;
   FrameIndices spreadOver(double span) const;
   bool isConnected(const FrameIndices& chosen) const;

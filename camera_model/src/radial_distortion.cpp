@@ -1,4 +1,4 @@
-#include "camera_model/radial_polynomial.h"
+#include "camera_model/radial_distortion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,22 +13,30 @@ constexpr double kLastStep = 1e-7;
 
 }  // namespace
 
-RadialPolynomial::RadialPolynomial(const std::array<double, 4>& coefficients, double limit,
-                                   double reach)
-    : c_(coefficients), max_radius_(findMaxRadius(limit)) {
+RadialDistortion::RadialDistortion(const std::array<double, 4>& numerator, double limit,
+                                   double reach, const std::array<double, 3>& denominator)
+    : c_(numerator),
+      b_(denominator),
+      is_rational_(denominator != std::array<double, 3>{}),
+      max_radius_(findMaxRadius(limit)) {
   max_distorted_ = max_radius_ * ratio(max_radius_ * max_radius_);
   fillTable(reach);
 }
 
-double RadialPolynomial::findMaxRadius(double limit) const {
+bool RadialDistortion::rises(double squared_radius) const {
+  return slope(squared_radius) >= kMinSlope &&
+         !(is_rational_ && denominator(squared_radius) < kMinDenominator);
+}
+
+double RadialDistortion::findMaxRadius(double limit) const {
   // Steps of 0.5 % find every dip of the slope that is wide enough to matter; bisection its edge.
   double inside = 0.0;
   for (double r = 1e-3; inside < limit; r *= 1.005) {
     double outside = std::min(r, limit);
-    if (slope(outside * outside) < kMinSlope) {
+    if (!rises(outside * outside)) {
       for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (inside + outside);
-        (slope(middle * middle) < kMinSlope ? outside : inside) = middle;
+        (rises(middle * middle) ? inside : outside) = middle;
       }
       return inside;
     }
@@ -37,7 +45,7 @@ double RadialPolynomial::findMaxRadius(double limit) const {
   return limit;
 }
 
-double RadialPolynomial::invertByBisection(double distorted) const {
+double RadialDistortion::invertByBisection(double distorted) const {
   double low = 0.0;
   double high = max_radius_;
   for (int i = 0; i < 40; ++i) {
@@ -47,7 +55,7 @@ double RadialPolynomial::invertByBisection(double distorted) const {
   return 0.5 * (low + high);
 }
 
-void RadialPolynomial::fillTable(double reach) {
+void RadialDistortion::fillTable(double reach) {
   inverse_ratios_.resize(kNodes, 1.0);
   const double end = std::clamp(reach, 1e-3, max_distorted_);
   squared_reach_ = end * end;
@@ -58,12 +66,12 @@ void RadialPolynomial::fillTable(double reach) {
   }
 }
 
-double RadialPolynomial::inverseRatioBeyondReach(double squared_distorted) const {
+double RadialDistortion::inverseRatioBeyondReach(double squared_distorted) const {
   const double distorted = std::min(std::sqrt(squared_distorted), max_distorted_);
   return invertByBisection(distorted) / distorted;
 }
 
-std::optional<double> RadialPolynomial::invert(double distorted) const {
+std::optional<double> RadialDistortion::invert(double distorted) const {
   if (!(distorted <= max_distorted_)) return std::nullopt;
   double r = distorted * nearInverseRatio(distorted * distorted);
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
