@@ -18,7 +18,7 @@
 #include "vins_estimator/initialization/extrinsic_rotation.h"
 #include "vins_estimator/initialization/initializer.h"
 #include "vins_estimator/initialization/scale_convergence.h"
-#include "vins_estimator/initialization/time_offset_search.h"
+#include "vins_estimator/initialization/time_offset_initializer.h"
 #include "vins_estimator/visual/rolling_shutter.h"
 #include "window_tracker.h"
 
@@ -45,6 +45,7 @@ class Estimator::Implementation {
       : options_(options),
         queue_(queueOptions()),
         calibrator_(calibratorOptions(options), {options.T_bc.rotation, options.td}),
+        time_offset_(options.estimate_td),
         initializer_(initializerOptions(options)),
         stillness_(initializerOptions(options).stillness),
         plausibility_(plausibilityOptions(options)),
@@ -105,9 +106,7 @@ class Estimator::Implementation {
     extrinsic_is_known_ = options_.extrinsic != ExtrinsicMode::kUnknown;
     calibrator_ =
         TurnCalibrator(calibratorOptions(options_), {options_.T_bc.rotation, options_.td});
-    time_offset_search_.clear();
-    time_offset_is_known_ = false;
-    search_begin_.reset();
+    time_offset_.clear();
   }
 
  private:
@@ -168,54 +167,31 @@ class Estimator::Implementation {
         atFirstRow(measurements->frame, shutter, gyro, meanRate(measurements->imu) - bias);
   }
 
-  /// A moving start with a wrong time offset is a wrong start: for some seconds it waits for the
-  /// search, which needs a turn.
-  bool awaitsTimeOffset(Stamp now) {
-    constexpr double kPatience = 3.0;  // [s]
-    if (!searchesTimeOffset()) return false;
-    if (!search_begin_ || now < *search_begin_) search_begin_ = now;
-    return toSeconds(now - *search_begin_) < kPatience;
-  }
-
-  bool searchesTimeOffset() const {
-    return options_.estimate_td && extrinsic_is_known_ && !time_offset_is_known_;
-  }
-
   /// Looks for the time offset, once, where it is to be estimated and may be far from the guess.
-  void searchTimeOffset(const FrameMeasurements& measurements, EstimatorResult* result) {
-    if (!searchesTimeOffset()) return;
+  /// Returns whether the frames were timed anew for it, this one included.
+  bool searchTimeOffset(const SharedMeasurements& shared, EstimatorResult* result) {
+    if (!extrinsic_is_known_) return false;
     const RigCalibration& rig = tracker_.window().rig;
-    const std::optional<TimeOffset> found =
-        time_offset_search_.addFrame(measurements, rig.T_bc.rotation);
-    if (!found) return;
-    time_offset_is_known_ = true;
-    // Turns that parallax bends make the offset look better known than it is.
-    constexpr double kLeastTimeSigma = 3e-3;  // [s]
-    const double sigma = std::max(kLeastTimeSigma, 2.0 * found->sigma);
-    const bool is_new = std::abs(found->td - rig.td) > sigma;
-    result->events.push_back({result->stamp,
-                              Severity::kInfo,
-                              "time_offset_found",
-                              "the time offset of camera and IMU is known from their turns",
-                              {{"td_s", found->td},
-                               {"sigma_s", found->sigma},
-                               {"pairs", static_cast<double>(found->pairs)},
-                               {"misfit", found->misfit}}});
-    if (!is_new) return;
-    // Frames before were timed otherwise, and do not go with those to come.
-    tracker_.setTimeOffset(found->td, sigma);
-    initializer_.clear();
+    const std::optional<TimeOffset> found = time_offset_.addFrame(*shared, rig.T_bc.rotation);
+    if (!found) return false;
+    result->events.push_back(toEvent(result->stamp, *found));
+    const double shift = found->td - rig.td;
+    if (std::abs(shift) <= found->sigma) return false;
+    const RetimedFrames retimed = initializer_.retime(shared, shift);
+    if (!retimed.frames.empty()) queue_.rewind(retimed.frames.back()->end, retimed.rest);
+    tracker_.setTimeOffset(found->td, found->sigma);
     TurnCalibratorOptions options = calibratorOptions(options_);
-    options.prior.td_sigma = sigma;
+    options.prior.td_sigma = found->sigma;
     calibrator_ = TurnCalibrator(options, {rig.T_bc.rotation, found->td});
+    return true;
   }
 
   /// Watches the rig turn, where camera and IMU stand to each other in a way that is not quite
   /// known. Returns whether enough is known of it to begin.
-  bool calibrate(const FrameMeasurements& measurements, EstimatorResult* result) {
+  bool calibrate(const SharedMeasurements& shared, EstimatorResult* result) {
     const RigCalibration& rig = tracker_.window().rig;
-    searchTimeOffset(measurements, result);
-    const std::optional<TurnCalibration> found = calibrator_.addFrame(measurements, rig.td);
+    if (searchTimeOffset(shared, result)) return false;
+    const std::optional<TurnCalibration> found = calibrator_.addFrame(*shared, rig.td);
     moveEvents(calibrator_.takeEvents(), result);
     if (!found) return extrinsic_is_known_;
     const bool is_new = !extrinsic_is_known_ || rig.T_bc.rotation.angularDistance(found->R_bc) >
@@ -242,9 +218,9 @@ class Estimator::Implementation {
     const FrameMeasurements& measurements = *shared;
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
     continuation_.addFrame(measurements);
-    if (tracker_.window().refines_rig && !calibrate(measurements, result)) return;
-    std::optional<Initialization> initialization =
-        initializer_.addFrame(shared, !awaitsTimeOffset(result->stamp));
+    if (tracker_.window().refines_rig && !calibrate(shared, result)) return;
+    const bool may_move = !extrinsic_is_known_ || !time_offset_.awaits(result->stamp);
+    std::optional<Initialization> initialization = initializer_.addFrame(shared, may_move);
     moveEvents(initializer_.takeEvents(), result);
     if (!initialization) return;
     continuation_.apply(&*initialization);
@@ -360,7 +336,7 @@ class Estimator::Implementation {
   EstimatorOptions options_;
   MeasurementQueue queue_;
   TurnCalibrator calibrator_;
-  TimeOffsetSearch time_offset_search_;
+  TimeOffsetInitializer time_offset_;
   Initializer initializer_;
   StillnessDetector stillness_;
   ImuPlausibility plausibility_;
@@ -374,8 +350,6 @@ class Estimator::Implementation {
   int backlog_ = 0;
   std::deque<LoopMatch> waiting_loops_;  ///< of keyframes that have just become such
   bool extrinsic_is_known_ = true;
-  bool time_offset_is_known_ = false;  ///< the search has answered
-  std::optional<Stamp> search_begin_;  ///< of the first frame that it could look at
   ScaleConvergence convergence_;
 };
 

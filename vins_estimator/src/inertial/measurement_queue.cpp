@@ -148,6 +148,15 @@ std::optional<FrameMeasurements> MeasurementQueue::next(double td, double readou
   return std::nullopt;
 }
 
+void MeasurementQueue::rewind(Stamp end, const std::vector<ImuSample>& samples) {
+  const auto kept =
+      imu_.empty() ? samples.end()
+                   : std::lower_bound(samples.begin(), samples.end(), imu_.front().stamp, isBefore);
+  imu_.insert(imu_.begin(), samples.begin(), kept);
+  end_ = end;
+  forgetUntil(end);
+}
+
 void MeasurementQueue::dropEarlyFrame() {
   const Stamp stamp = frames_.front().stamp;
   frames_.pop_front();

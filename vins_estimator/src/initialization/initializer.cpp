@@ -86,6 +86,15 @@ std::optional<Initialization> Initializer::solveAgain() {
   return startMoving();
 }
 
+RetimedFrames Initializer::retime(const SharedMeasurements& newest, double shift) {
+  push(newest);
+  RetimedFrames retimed = estimator::retime(buffer_, shift);
+  buffer_.assign(retimed.frames.begin(), retimed.frames.end());
+  stillness_.clear();
+  frames_until_attempt_ = 0;
+  return retimed;
+}
+
 std::optional<Initialization> Initializer::addFrame(const SharedMeasurements& measurements,
                                                     bool may_move) {
   push(measurements);

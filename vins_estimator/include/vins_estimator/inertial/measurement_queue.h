@@ -64,6 +64,10 @@ class MeasurementQueue {
   /// change a little from call to call: an interval begins where the one before has ended.
   std::optional<FrameMeasurements> next(double td, double readout = 0.0);
 
+  /// Lets the next interval begin at `end`, which may be before the end of the last one: `samples`
+  /// cover what lies between. For frames that were timed anew.
+  void rewind(Stamp end, const std::vector<ImuSample>& samples);
+
   /// What has happened since the last call.
   std::vector<Event> takeEvents();
 

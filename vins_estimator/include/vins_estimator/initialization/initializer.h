@@ -15,6 +15,7 @@
 #include "vins_estimator/inertial/nav_state.h"
 #include "vins_estimator/inertial/preintegration.h"
 #include "vins_estimator/initialization/initialization.h"
+#include "vins_estimator/initialization/retiming.h"
 #include "vins_estimator/initialization/static_initializer.h"
 #include "vins_estimator/initialization/visual_inertial_alignment.h"
 #include "vins_estimator/initialization/visual_structure.h"
@@ -66,6 +67,10 @@ class Initializer {
 
   /// Solves the moving start again with all frames that are remembered, the newest one included.
   std::optional<Initialization> solveAgain();
+
+  /// Times the remembered frames and `newest`, which follows them, anew for a time offset larger by
+  /// `shift` [s], and remembers them so. The next frame is expected to follow the last of them.
+  RetimedFrames retime(const SharedMeasurements& newest, double shift);
 
   /// What there is to tell since the last call.
   std::vector<Event> takeEvents();
