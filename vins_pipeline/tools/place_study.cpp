@@ -139,7 +139,7 @@ std::vector<StudiedKeyframe> collectKeyframes(const PipelineOptions& options,
   selection.image_topics = {options.image_topics.front()};
   selection.start = start;
   selection.duration = duration;
-  const auto opened = openRecording(recording, selection);
+  const auto opened = openRecording({recording}, selection);
   Collector collector(options);
   const Stamp begin = opened->summary().begin, end = opened->summary().end;
   const auto milliseconds = [begin](Stamp stamp) {
