@@ -1,6 +1,7 @@
 #include "rig_sources.h"
 
 #include <filesystem>
+#include <system_error>
 
 #include "vins_core/folder.h"
 
@@ -40,6 +41,12 @@ bool isCameraAlone(const Parameters& main) {
          !hasAny(main, kKalibrNoise) && !main.has("imu0");
 }
 
+/// Also where the name is none that the file system takes.
+bool isFile(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
 /// Where Kalibr's users have the IMU's file: imu.yaml, or named as the chain is.
 std::string imuFileBeside(const std::string& chain) {
   const fs::path path(chain);
@@ -54,7 +61,7 @@ std::string imuFileBeside(const std::string& chain) {
   }
   for (const std::string& name : names) {
     const fs::path candidate = path.parent_path() / name;
-    if (name != path.filename() && fs::is_regular_file(candidate)) return candidate.string();
+    if (name != path.filename() && isFile(candidate)) return candidate.string();
   }
   return "";
 }
@@ -110,7 +117,7 @@ RigSources findRigSources(const Parameters& main) {
 std::string fileOf(const Parameters& parameters, const std::string& key,
                    const std::string& what_it_is) {
   const std::string path = pathSeenFrom(parameters.name(), parameters.text(key));
-  if (!fs::is_regular_file(path)) {
+  if (!isFile(path)) {
     parameters.fail(key, "'" + parameters.text(key) + "', but there is no " + path,
                     what_it_is + ", seen from this file's folder");
   }

@@ -93,6 +93,12 @@ TEST_F(RigOfFiles, ReadsVinsFusionsStereoForm) {
   EXPECT_EQ(countOf(rig, "2 cameras: odometry goes by the first"), 1);
 }
 
+TEST_F(RigOfFiles, AFileNameLongerThanTheFileSystemTakesIsMissing) {
+  std::string text = rig_files::vinsFusion(1);
+  text.replace(text.find("cam0.yaml"), 4, std::string(5000, 'x'));
+  EXPECT_THROW(readRigFile(write("rig.yaml", text)), InputError);
+}
+
 TEST_F(RigOfFiles, SaysWhereACamerasFileIsMissingOrOfAnotherSize) {
   const std::string rig = write("rig.yaml", vinsFusion(1));
   try {

@@ -44,7 +44,7 @@ vins::pipeline::RecordingSelection selectionOf(const po::variables_map& values) 
 
 /// Prints the statistics, and the quantiles of the number of tracks.
 void measure(const std::string& path, const po::variables_map& values) {
-  const auto recording = vins::pipeline::openRecording(path, selectionOf(values));
+  const auto recording = vins::pipeline::openRecording({path}, selectionOf(values));
   vins::simulation::ImageStatisticsMeter meter;
   vins::simulation::TrackCounter counter;
   std::vector<int> tracks;

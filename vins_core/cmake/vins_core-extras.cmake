@@ -9,6 +9,10 @@ if(NOT Python3_EXECUTABLE AND PYTHON_EXECUTABLE)
   set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
 endif()
 option(VINS_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
+option(VINS_SANITIZE "Compile with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+# Optimized, because Eigen unoptimized is too slow to test; a finding ends the program.
+set(vins_sanitize_flags -fsanitize=address,undefined -fno-sanitize-recover=all
+  -fno-omit-frame-pointer -O2 -g1)
 
 # vins_target_options(TARGET ...): C++17, the warnings, and floating point that does not depend on
 # whether the machine has fused multiply-add. Nothing reads errno or the processor's exception flags
@@ -20,6 +24,10 @@ function(vins_target_options)
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -ffp-contract=off
       -fno-math-errno -fno-trapping-math
       $<$<BOOL:${VINS_WARNINGS_AS_ERRORS}>:-Werror>)
+    if(VINS_SANITIZE)
+      target_compile_options(${target} PRIVATE ${vins_sanitize_flags})
+      target_link_options(${target} PRIVATE -fsanitize=address,undefined)
+    endif()
   endforeach()
 endfunction()
 

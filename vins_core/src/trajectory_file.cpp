@@ -40,8 +40,10 @@ double parseNumber(const std::string& text) {
   return value;
 }
 
+/// Stamps from 9e18 ns on, in the year 2255, are refused: their numbers end soon after.
 Stamp parseInteger(const std::string& text) {
-  if (text.empty() || text.size() > 19 || text.find_first_not_of("0123456789") != text.npos) {
+  const bool fits = text.size() < 19 || (text.size() == 19 && text[0] != '9');
+  if (text.empty() || !fits || text.find_first_not_of("0123456789") != text.npos) {
     throw InputError("found '" + text + "' where a stamp is needed");
   }
   return std::stoll(text);
@@ -77,7 +79,8 @@ Stamp parseSeconds(const std::string& text) {
   const std::string whole = text.substr(0, dot);
   std::string decimals = dot == std::string::npos ? "" : text.substr(dot + 1);
   const bool digits_only = (whole + decimals).find_first_not_of("0123456789") == std::string::npos;
-  if (!digits_only || (whole + decimals).empty() || whole.size() > 10) {
+  const bool fits = whole.size() < 10 || (whole.size() == 10 && whole[0] != '9');
+  if (!digits_only || (whole + decimals).empty() || !fits) {
     throw InputError("found '" + text + "' where a stamp in seconds is needed");
   }
   decimals.resize(9, '0');

@@ -62,6 +62,8 @@ TEST(TrajectoryFile, ErrorsNameFileAndLine) {
             "gt.txt:1: found 'nan' where a finite number is needed");
   EXPECT_EQ(errorOf("x 0 0 0 0 0 0 1\n"), "gt.txt:1: found 'x' where a stamp in seconds is needed");
   EXPECT_EQ(errorOf("1.5,0,0,0,1,0,0,0\n"), "gt.txt:1: found '1.5' where a stamp is needed");
+  EXPECT_EQ(errorOf("9403636579758555392,0,0,0,1,0,0,0\n"),
+            "gt.txt:1: found '9403636579758555392' where a stamp is needed");
   EXPECT_EQ(errorOf("1 0 0 0 0 0 0 2\n"),
             "gt.txt:1: found a quaternion of length 2.000000 where a unit quaternion is needed");
   EXPECT_EQ(errorOf("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"),
@@ -73,7 +75,7 @@ TEST(TrajectoryFile, ParsesSecondsExactly) {
   EXPECT_EQ(parseSeconds("1403715273.26214"), 1403715273262140000);
   EXPECT_EQ(parseSeconds("5"), 5000000000);
   EXPECT_EQ(parseSeconds("0.0000000019"), 1);
-  for (const char* text : {"", ".", "-1", "1e9", "1.2.3", "12345678901.0"}) {
+  for (const char* text : {"", ".", "-1", "1e9", "1.2.3", "12345678901.0", "9403715273.2"}) {
     EXPECT_THROW(parseSeconds(text), InputError) << text;
   }
 }

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "encoded_image_size.h"
 #include "vins_core/input_error.h"
 
 namespace vins_msgs {
@@ -102,6 +103,22 @@ cv::Mat pixelsOf(const sensor_msgs::Image& message, int type) {
   return swapped;
 }
 
+[[noreturn]] void refuse(const sensor_msgs::CompressedImage& message, const std::string& why) {
+  throw vins::InputError("compressed image of format '" + message.format + "' and " +
+                         std::to_string(message.data.size()) + " bytes cannot be decoded" + why);
+}
+
+/// A few bytes of header can make a decoder ask for gigabytes.
+void requireModestSize(const sensor_msgs::CompressedImage& message) {
+  constexpr std::uint64_t kMostPixels = 1 << 25;
+  const auto size = encodedImageSize(message.data);
+  if (!size) refuse(message, ": it is neither JPEG nor PNG");
+  if (std::uint64_t{size->width} * size->height <= kMostPixels) return;
+  refuse(message, ": it says to be of " + std::to_string(size->width) + "x" +
+                      std::to_string(size->height) + "; allowed: at most " +
+                      std::to_string(kMostPixels) + " pixels");
+}
+
 }  // namespace
 
 cv::Mat ImageConverter::toEightBits(const cv::Mat& grey) {
@@ -128,6 +145,7 @@ cv::Mat ImageConverter::toGrey(const sensor_msgs::Image& message) {
 }
 
 cv::Mat ImageConverter::toGrey(const sensor_msgs::CompressedImage& message) {
+  requireModestSize(message);
   cv::Mat image;
   try {
     // Grey values in the file's depth.
@@ -137,8 +155,7 @@ cv::Mat ImageConverter::toGrey(const sensor_msgs::CompressedImage& message) {
   }
   if (image.type() == CV_16UC1 && !image.empty()) return toEightBits(image);
   if (image.type() == CV_8UC1 && !image.empty()) return image;
-  throw vins::InputError("compressed image of format '" + message.format + "' and " +
-                         std::to_string(message.data.size()) + " bytes cannot be decoded");
+  refuse(message, "");
 }
 
 }  // namespace vins_msgs

@@ -1,5 +1,6 @@
 #include "vins_msgs/image_converter.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -115,6 +116,34 @@ TEST(ImageConverter, DecodesCompressedImages) {
   EXPECT_THROW(ImageConverter().toGrey(message), vins::InputError);
   message.data.clear();
   EXPECT_THROW(ImageConverter().toGrey(message), vins::InputError);
+}
+
+std::string reasonOf(const sensor_msgs::CompressedImage& message) {
+  try {
+    ImageConverter().toGrey(message);
+  } catch (const vins::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The size stands in the header: a file of a few bytes would have the decoder ask for gigabytes.
+TEST(ImageConverter, RefusesCompressedImagesThatSayToBeHuge) {
+  sensor_msgs::CompressedImage message;
+  cv::imencode(".png", cv::Mat(8, 10, CV_8UC1, cv::Scalar(77)), message.data);
+  message.data[16] = message.data[20] = 1;  // the first of four bytes of width and of height
+  EXPECT_NE(reasonOf(message).find("16777226x16777224; allowed: at most 33554432 pixels"),
+            std::string::npos)
+      << reasonOf(message);
+  cv::imencode(".jpg", cv::Mat(8, 10, CV_8UC1, cv::Scalar(77)), message.data);
+  EXPECT_EQ(reasonOf(message), "");
+  const std::uint8_t size[] = {0, 8, 0, 10};
+  const auto place = std::search(message.data.begin(), message.data.end(), size, size + 4);
+  ASSERT_NE(place, message.data.end());
+  place[0] = place[2] = 0xff;
+  EXPECT_NE(reasonOf(message).find("65290x65288; allowed"), std::string::npos) << reasonOf(message);
+  cv::imencode(".bmp", cv::Mat(8, 10, CV_8UC1, cv::Scalar(77)), message.data);
+  EXPECT_NE(reasonOf(message).find("it is neither JPEG nor PNG"), std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "csv_file.h"
@@ -54,7 +55,8 @@ void readCameraFolder(const fs::path& camera, MissingImages missing, AslRecordin
   std::vector<ImageFile> images;
   readCsvFile((camera / "data.csv").string(), 1, [&](const CsvRow& row) {
     const fs::path path = camera / "data" / row.fields[0];
-    if (!row.fields[0].empty() && fs::is_regular_file(path)) {
+    std::error_code error;  // also where the name is none that the file system takes
+    if (!row.fields[0].empty() && fs::is_regular_file(path, error)) {
       images.push_back({row.stamp, path.string()});
     } else if (missing == MissingImages::kSkip) {
       recording->missing_images.push_back(path.string());

@@ -52,6 +52,9 @@ std::optional<Stamp> InputAccount::imuEnd() const {
 std::string InputAccount::problems(const RecordingSummary& recording) const {
   std::ostringstream text;
   if (!recording.damage.empty()) text << "damage        " << recording.damage << "\n";
+  if (!recording.interruption.empty()) {
+    text << "not closed    " << recording.interruption << "\n";
+  }
   if (refused_ > 0) {
     text << "refused       " << refused_ << " of " << recording.images
          << " images (see image_refused in events.csv)\n";

@@ -89,6 +89,42 @@ TEST_F(PlaceTools, TrainsOnRecordings) {
   EXPECT_NE(outcome.output.find("0.png: 1 images"), std::string::npos) << outcome.output;
 }
 
+TEST_F(PlaceTools, TrainWithoutAnImageThatCannotBeRead) {
+  const std::string input = path("images") + kPattern + "--k 5 --levels 3 -o ";
+  std::ofstream(path("images/bad.png")) << "no image";
+  const Outcome outcome = run("train_vocabulary", input + path("a.voc"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("refused: 1 of 7 images"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("bad.png: is no image that can be read"), std::string::npos);
+  fs::remove(path("images/bad.png"));
+  ASSERT_EQ(run("train_vocabulary", input + path("b.voc")).exit_code, 0);
+  EXPECT_EQ(textOf(path("a.voc")), textOf(path("b.voc")));
+  std::ofstream(path("alone.png")) << "no image";
+  EXPECT_EQ(run("train_vocabulary", path("alone.png") + kPattern + "-o " + path("c.voc")).exit_code,
+            1);
+}
+
+TEST_F(PlaceTools, EvaluateWithoutAnImageThatCannotBeRead) {
+  const std::string recording = vins::testing::sharedData("euroc_v101_micro");
+  VINS_SKIP_WITHOUT(recording);
+  const fs::path copy = folder_ / "copy";
+  fs::copy(recording, copy, fs::copy_options::recursive);
+  fs::path last;
+  for (const auto& entry : fs::recursive_directory_iterator(copy)) {
+    if (entry.path().extension() != ".png") continue;
+    if (entry.path().string().find("cam0") != std::string::npos)
+      last = std::max(last, entry.path());
+  }
+  fs::remove(last);
+  std::ofstream(last) << "no image";
+  const Outcome outcome =
+      run("evaluate_places",
+          "--config ../config/euroc/euroc_config.yaml --recording " + copy.string() + kPattern +
+              "--vocabulary ../support_files/brief_k10L5.voc --out " + path("places"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("refused: 1 of "), std::string::npos) << outcome.output;
+}
+
 TEST_F(PlaceTools, SayWhatIsWrong) {
   const std::string out = " -o " + path("a.voc");
   for (const std::string& arguments :

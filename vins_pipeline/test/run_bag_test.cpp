@@ -232,6 +232,20 @@ TEST_F(RunBag, ABadImageCostsThatImageOnly) {
   EXPECT_TRUE(contains(textOf(path("out/events.csv")), "752x478"));
 }
 
+TEST_F(RunBag, DamageIsToldByTheExitCodeAndCountsAgainstAllImages) {
+  const std::string bag = writeBag("a.bag");
+  {
+    std::fstream bytes(bag, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(fs::file_size(bag) / 2));
+    bytes << std::string(500'000, 'x');
+  }
+  const Outcome outcome = run(std::string(kConfig) + " " + bag + " --out " + path("out").string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "damage        " + bag)) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "6 images, 51 IMU samples")) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, " of 6 images, path")) << outcome.output;
+}
+
 TEST_F(RunBag, AnImuThatEndsIsToldByTheExitCode) {
   const fs::path bag = path("ends.bag");
   {

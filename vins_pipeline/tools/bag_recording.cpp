@@ -1,10 +1,11 @@
 #include "vins_pipeline/bag_recording.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -13,16 +14,14 @@
 #include <geometry_msgs/PointStamped.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TransformStamped.h>
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-#include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
-#include <std_msgs/Header.h>
 
+#include "bag_file.h"
+#include "bag_topics.h"
+#include "recorded_message.h"
 #include "vins_core/input_error.h"
-#include "vins_msgs/camera_info.h"
 #include "vins_msgs/conversions.h"
 #include "vins_msgs/image_converter.h"
 #include "vins_pipeline/stamp_order.h"
@@ -30,149 +29,116 @@
 namespace vins::pipeline {
 namespace {
 
-using Types = std::map<std::string, std::string>;  ///< of the bag's topics
-
-constexpr char kImage[] = "sensor_msgs/Image";
-constexpr char kCompressed[] = "sensor_msgs/CompressedImage";
-constexpr char kCameraInfo[] = "sensor_msgs/CameraInfo";
-constexpr char kImu[] = "sensor_msgs/Imu";
-constexpr char kPose[] = "geometry_msgs/PoseStamped";
-constexpr char kTransform[] = "geometry_msgs/TransformStamped";
-constexpr char kPoint[] = "geometry_msgs/PointStamped";
-
-Types typesOf(const rosbag::Bag& bag) {
-  Types types;
-  rosbag::View view(bag);
-  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    types[connection->topic] = connection->datatype;
-  }
-  return types;
-}
-
-std::string listOf(const Types& types) {
-  std::string text;
-  for (const auto& [topic, type] : types) {
-    text += (text.empty() ? "" : ", ") + topic + " (" + type + ")";
-  }
-  return text.empty() ? "no topics" : text;
-}
-
-void requireTopic(const std::string& path, const Types& types, const std::string& topic,
-                  const std::vector<std::string>& allowed) {
-  const auto found = types.find(topic);
-  if (found == types.end()) {
-    throw InputError(path + ": has no topic '" + topic + "'; it has " + listOf(types));
-  }
-  if (std::find(allowed.begin(), allowed.end(), found->second) != allowed.end()) return;
-  std::string choices;
-  for (const std::string& type : allowed) choices += (choices.empty() ? "" : " or ") + type;
-  throw InputError(path + ": topic '" + topic + "' is of type " + found->second +
-                   "; allowed: " + choices);
-}
-
-/// The topic of ground truth, or "".
-std::string truthTopicOf(const Types& types) {
-  for (const std::string topic :
-       {"/ground_truth/pose", "/vicon/firefly_sbx/firefly_sbx", "/leica/position"}) {
-    const auto found = types.find(topic);
-    if (found == types.end()) continue;
-    const std::string& type = found->second;
-    if (type == kPose || type == kTransform || type == kPoint) return topic;
-  }
-  return "";
-}
-
 std::string placeOf(const std::string& bag, const std::string& topic, Stamp stamp) {
   return bag + ": " + topic + ": image at " + std::to_string(stamp) + " ns";
 }
 
-/// The stamp of a message's header, which comes first in every type that is read here.
-Stamp headerStampOf(const rosbag::MessageInstance& instance, std::vector<std::uint8_t>* buffer) {
-  buffer->resize(instance.size());
-  ros::serialization::OStream out(buffer->data(), instance.size());
-  instance.write(out);
-  ros::serialization::IStream in(buffer->data(), instance.size());
-  std_msgs::Header header;
-  ros::serialization::deserialize(in, header);
-  return vins_msgs::toStamp(header.stamp);
+std::string nameOf(const std::vector<std::string>& paths) {
+  if (paths.size() == 1) return paths.front();
+  return paths.front() + " and " + std::to_string(paths.size() - 1) + " more";
 }
 
 class BagRecording : public Recording {
  public:
-  BagRecording(const std::string& path, const RecordingSelection& selection)
+  BagRecording(const std::vector<std::string>& paths, const RecordingSelection& selection)
       : selection_(selection) {
-    summary_.name = path;
-    bag_.open(path, rosbag::bagmode::Read);
-    types_ = typesOf(bag_);
-    requireTopic(path, types_, selection.imu_topic, {kImu});
-    std::vector<std::string> topics = {selection.imu_topic};
-    if (!selection.accel_topic.empty()) {
-      requireTopic(path, types_, selection.accel_topic, {kImu});
-      topics.push_back(selection.accel_topic);
-    }
-    for (std::string& topic : selection_.image_topics) {
-      if (types_.count(topic) == 0 && types_.count(topic + "/compressed") > 0) {
-        topic += "/compressed";
+    summary_.name = nameOf(paths);
+    for (const std::string& path : paths) files_.emplace_back(path);
+    for (const BagFile& file : files_) {
+      for (const auto& [id, connection] : file.connections()) {
+        types_[connection.topic] = connection.type;
       }
-      requireTopic(path, types_, topic, {kImage, kCompressed});
-      topics.push_back(topic);
     }
-    chooseSpan(topics);
+    requireTopics();
     truth_topic_ = truthTopicOf(types_);
-    if (!truth_topic_.empty()) topics.push_back(truth_topic_);
     converters_.resize(selection_.image_topics.size());
-    view_.addQuery(bag_, rosbag::TopicQuery(topics), vins_msgs::toRosTime(summary_.begin),
-                   vins_msgs::toRosTime(summary_.end));
-    summarize();
-    index();
+    for (BagFile& file : files_) addMessages(&file);
+    for (BagFile& file : files_) requireDefinitions(file);
+    // Files of one recording follow each other in time, whatever the order they are given in.
+    std::stable_sort(messages_.begin(), messages_.end(), [](const Place& a, const Place& b) {
+      return a.message.arrival < b.message.arrival;
+    });
+    chooseSpan();
+    keepSpan();
+    describeEnds();
+    for (const Place& place : messages_) {
+      order_.add(streamOf(topicOf(place)), place.message.stamp);
+    }
+    order_.sort();
   }
 
   std::optional<Record> next() override {
     if (next_ == order_.place().size()) return std::nullopt;
-    const std::size_t place = order_.place()[next_++];
-    const rosbag::MessageInstance& instance = messages_[place];
-    try {
-      return Record{vins_msgs::toStamp(instance.getTime()), dataOf(instance)};
-    } catch (const ros::Exception& error) {
-      throw InputError(summary_.name + ": is broken: " + error.what());
-    }
+    const Place& place = messages_[order_.place()[next_++]];
+    return Record{place.message.arrival, dataOf(place)};
   }
 
  private:
   using Data = decltype(Record::data);
 
-  /// Reads all header stamps once, as far as the bag can be read.
-  void index() {
-    std::vector<std::uint8_t> buffer;
-    Stamp reached = summary_.begin;
-    try {
-      for (const rosbag::MessageInstance& instance : view_) {
-        const Stamp stamp = headerStampOf(instance, &buffer);
-        reached = vins_msgs::toStamp(instance.getTime());
-        messages_.push_back(instance);
-        order_.add(streamOf(instance.getTopic()), stamp);
-      }
-    } catch (const ros::Exception& error) {
-      std::ostringstream text;
-      text << summary_.name << ": is damaged behind second " << toSeconds(reached - summary_.begin)
-           << ", up to which it is used: " << error.what();
-      summary_.damage = text.str();
+  /// A message, and the bag that it stands in.
+  struct Place {
+    BagFile* file = nullptr;
+    BagMessage message;
+  };
+
+  static const BagConnection& connectionOf(const Place& place) {
+    return place.file->connections().at(place.message.connection);
+  }
+  static const std::string& topicOf(const Place& place) { return connectionOf(place).topic; }
+
+  void requireTopics() {
+    requireTopic(summary_.name, types_, selection_.imu_topic, {kImu});
+    if (!selection_.accel_topic.empty()) {
+      requireTopic(summary_.name, types_, selection_.accel_topic, {kImu});
     }
-    order_.sort();
+    for (std::string& topic : selection_.image_topics) {
+      if (types_.count(topic) == 0 && types_.count(topic + "/compressed") > 0) {
+        topic += "/compressed";
+      }
+      requireTopic(summary_.name, types_, topic, {kImage, kCompressed});
+    }
+  }
+
+  bool isImage(const std::string& topic) const {
+    const auto& topics = selection_.image_topics;
+    return std::find(topics.begin(), topics.end(), topic) != topics.end();
+  }
+
+  bool isInertial(const std::string& topic) const {
+    return topic == selection_.imu_topic || topic == selection_.accel_topic;
+  }
+
+  bool isSelected(const std::string& topic) const {
+    return isInertial(topic) || isImage(topic) || topic == truth_topic_;
+  }
+
+  /// The types are told apart by the bag; that they mean what they mean here, by their definition.
+  void requireDefinitions(const BagFile& file) const {
+    for (const auto& [id, connection] : file.connections()) {
+      if (!isSelected(connection.topic)) continue;
+      requireTopic(file.path(), {{connection.topic, connection.type}}, connection.topic,
+                   {types_.at(connection.topic)});
+      if (connection.md5sum == definitionOf(connection.type)) continue;
+      throw InputError(file.path() + ": " + connection.topic +
+                       ": messages are of another definition than " + connection.type);
+    }
+  }
+
+  void addMessages(BagFile* file) {
+    for (const BagMessage& message : file->takeMessages()) {
+      const Place place{file, message};
+      if (isSelected(topicOf(place))) messages_.push_back(place);
+    }
   }
 
   StampOrder::Stream streamOf(const std::string& topic) const {
-    if (topic == selection_.imu_topic || topic == selection_.accel_topic) {
-      return StampOrder::Stream::kImu;
-    }
+    if (isInertial(topic)) return StampOrder::Stream::kImu;
     return topic == truth_topic_ ? StampOrder::Stream::kTruth : StampOrder::Stream::kImage;
   }
 
-  void chooseSpan(const std::vector<std::string>& topics) {
-    rosbag::View view(bag_, rosbag::TopicQuery(topics));
-    if (view.size() == 0) throw InputError(summary_.name + ": has no messages");
-    const Stamp first = vins_msgs::toStamp(view.getBeginTime());
-    const Stamp last = vins_msgs::toStamp(view.getEndTime());
+  void chooseSpan() {
+    const auto [first, last] = flight();
     summary_.begin = first + toNanoseconds(selection_.start);
     summary_.end = selection_.duration
                        ? std::min(last, summary_.begin + toNanoseconds(*selection_.duration))
@@ -184,145 +150,173 @@ class BagRecording : public Recording {
     throw InputError(message.str());
   }
 
-  std::size_t count(const std::string& topic) const {
-    return rosbag::View(bag_, rosbag::TopicQuery(topic), vins_msgs::toRosTime(summary_.begin),
-                        vins_msgs::toRosTime(summary_.end))
-        .size();
+  /// The first and the last arrival of IMU and images; ground truth may go beyond.
+  std::pair<Stamp, Stamp> flight() const {
+    std::optional<std::pair<Stamp, Stamp>> span;
+    const auto extend = [&](const std::string& topic, Stamp stamp) {
+      if (!isSelected(topic) || streamOf(topic) == StampOrder::Stream::kTruth) return;
+      if (!span) span.emplace(stamp, stamp);
+      span = {std::min(span->first, stamp), std::max(span->second, stamp)};
+    };
+    for (const Place& place : messages_) extend(topicOf(place), place.message.arrival);
+    if (!span) throw InputError(summary_.name + ": has no messages");
+    forEachLoss([&](const std::string& topic, const BagLoss& loss) { extend(topic, loss.end); });
+    return *span;
   }
 
-  void summarize() {
-    summary_.imu_samples = count(selection_.imu_topic);
-    for (const std::string& topic : selection_.image_topics) summary_.images += count(topic);
-    if (!truth_topic_.empty()) summary_.truth_poses = count(truth_topic_);
+  template <typename Function>
+  void forEachLoss(const Function& function) const {
+    for (const BagFile& file : files_) {
+      for (const BagLoss& loss : file.lost()) {
+        const auto connection = file.connections().find(loss.connection);
+        if (connection != file.connections().end()) function(connection->second.topic, loss);
+      }
+    }
+  }
+
+  void countOne(const std::string& topic, std::size_t count) {
+    if (topic == selection_.imu_topic) summary_.imu_samples += count;
+    if (isImage(topic)) summary_.images += count;
+    if (topic == truth_topic_) summary_.truth_poses += count;
+  }
+
+  /// Drops what lies outside the span, and counts what lies inside, lost messages included.
+  void keepSpan() {
+    for (BagFile& file : files_) reached_[&file] = summary_.begin;
+    for (const Place& place : messages_) {
+      Stamp& reached = reached_[place.file];
+      reached = std::max(reached, place.message.arrival);
+    }
+    const auto is_outside = [this](const Place& place) {
+      return place.message.arrival < summary_.begin || place.message.arrival > summary_.end;
+    };
+    messages_.erase(std::remove_if(messages_.begin(), messages_.end(), is_outside),
+                    messages_.end());
+    for (const Place& place : messages_) countOne(topicOf(place), 1);
+    forEachLoss([this](const std::string& topic, const BagLoss& loss) {
+      if (loss.begin >= summary_.begin && loss.begin <= summary_.end) countOne(topic, loss.count);
+    });
     if (summary_.truth_poses > 0) summary_.truth_source = summary_.name + ":" + truth_topic_;
   }
 
-  template <typename Message>
-  typename Message::ConstPtr read(const rosbag::MessageInstance& instance) const {
-    const auto message = instance.instantiate<Message>();
-    if (message) return message;
-    throw InputError(summary_.name + ": " + instance.getTopic() +
-                     ": a message is of another definition than " + instance.getDataType());
-  }
-
-  Data dataOf(const rosbag::MessageInstance& instance) {
-    const std::string& topic = instance.getTopic();
-    if (topic == selection_.imu_topic) return vins_msgs::fromMsg(*read<sensor_msgs::Imu>(instance));
-    if (topic == selection_.accel_topic) {
-      const ImuSample sample = vins_msgs::fromMsg(*read<sensor_msgs::Imu>(instance));
-      return RecordedAcceleration{sample.stamp, sample.acceleration};
+  /// Says which files end before their end, within the span.
+  void describeEnds() {
+    for (const BagFile& file : files_) {
+      const Stamp reached = reached_.at(&file);
+      if (selection_.duration && reached >= summary_.end) continue;
+      std::ostringstream second;
+      second << toSeconds(reached - summary_.begin);
+      if (!file.damage().empty()) {
+        summary_.damage += (summary_.damage.empty() ? "" : "; ") + file.path() +
+                           ": is damaged behind second " + second.str() +
+                           ", up to which it is used: " + file.damage();
+      } else if (!file.isClosed()) {
+        summary_.interruption += (summary_.interruption.empty() ? "" : "; ") + file.path() +
+                                 ": was not closed when it was recorded; it is used up to its "
+                                 "end, second " +
+                                 second.str();
+      }
     }
-    if (topic == truth_topic_) return truthOf(instance);
-    return imageOf(instance);
   }
 
   template <typename Message>
-  RecordedImage loadable(const rosbag::MessageInstance& instance, std::size_t camera) {
-    const auto message = read<Message>(instance);
+  static Message read(const Place& place) {
+    return readMessage<Message>(place.file->read(place.message));
+  }
+
+  Data dataOf(const Place& place) {
+    const std::string& topic = topicOf(place);
+    if (isImage(topic)) return imageOf(place);
+    try {
+      if (topic == truth_topic_) return truthOf(place);
+      const ImuSample sample = vins_msgs::fromMsg(read<sensor_msgs::Imu>(place));
+      if (topic == selection_.imu_topic) return sample;
+      return RecordedAcceleration{sample.stamp, sample.acceleration};
+    } catch (const InputError& error) {
+      throw InputError(place.file->path() + ": " + topic + ": " + error.what());
+    }
+  }
+
+  /// An image is read when it is asked for, so that those that wait cost no memory.
+  RecordedImage imageOf(const Place& place) {
+    const auto& topics = selection_.image_topics;
+    const auto camera = std::find(topics.begin(), topics.end(), topicOf(place)) - topics.begin();
     RecordedImage image;
     image.camera = static_cast<int>(camera);
-    image.stamp = vins_msgs::toStamp(message->header.stamp);
-    image.load = [message, converter = &converters_[camera],
-                  place = placeOf(summary_.name, instance.getTopic(), image.stamp)] {
+    image.stamp = place.message.stamp;
+    image.load = [place, converter = &converters_[static_cast<std::size_t>(camera)]] {
       try {
-        return converter->toGrey(*message);
+        return connectionOf(place).type == kImage
+                   ? converter->toGrey(read<sensor_msgs::Image>(place))
+                   : converter->toGrey(read<sensor_msgs::CompressedImage>(place));
       } catch (const InputError& error) {
-        throw InputError(place + ": " + error.what());
+        throw InputError(placeOf(place.file->path(), topicOf(place), place.message.stamp) + ": " +
+                         error.what());
       }
     };
     return image;
   }
 
-  RecordedImage imageOf(const rosbag::MessageInstance& instance) {
-    const auto& topics = selection_.image_topics;
-    const auto place = std::find(topics.begin(), topics.end(), instance.getTopic());
-    const auto camera = static_cast<std::size_t>(place - topics.begin());
-    return instance.getDataType() == kImage
-               ? loadable<sensor_msgs::Image>(instance, camera)
-               : loadable<sensor_msgs::CompressedImage>(instance, camera);
-  }
-
-  RecordedTruth truthOf(const rosbag::MessageInstance& instance) const {
-    if (instance.getDataType() == kPose) {
-      const auto message = read<geometry_msgs::PoseStamped>(instance);
-      return {vins_msgs::toStamp(message->header.stamp), vins_msgs::fromMsg(message->pose), true};
+  RecordedTruth truthOf(const Place& place) const {
+    const Stamp stamp = place.message.stamp;
+    const std::string& type = connectionOf(place).type;
+    if (type == kPose) {
+      return {stamp, vins_msgs::fromMsg(read<geometry_msgs::PoseStamped>(place).pose), true};
     }
-    if (instance.getDataType() == kTransform) {
-      const auto message = read<geometry_msgs::TransformStamped>(instance);
+    if (type == kTransform) {
+      const auto transform = read<geometry_msgs::TransformStamped>(place).transform;
       geometry_msgs::Pose pose;
-      pose.position.x = message->transform.translation.x;
-      pose.position.y = message->transform.translation.y;
-      pose.position.z = message->transform.translation.z;
-      pose.orientation = message->transform.rotation;
-      return {vins_msgs::toStamp(message->header.stamp), vins_msgs::fromMsg(pose), true};
+      pose.position.x = transform.translation.x;
+      pose.position.y = transform.translation.y;
+      pose.position.z = transform.translation.z;
+      pose.orientation = transform.rotation;
+      return {stamp, vins_msgs::fromMsg(pose), true};
     }
-    const auto message = read<geometry_msgs::PointStamped>(instance);
-    const Eigen::Vector3d position(message->point.x, message->point.y, message->point.z);
-    return {vins_msgs::toStamp(message->header.stamp),
-            Pose(Eigen::Quaterniond::Identity(), position), false};
+    const auto point = read<geometry_msgs::PointStamped>(place).point;
+    return {stamp, Pose(Eigen::Quaterniond::Identity(), {point.x, point.y, point.z}), false};
   }
 
   RecordingSelection selection_;
-  rosbag::Bag bag_;
-  Types types_;
+  std::deque<BagFile> files_;
+  TopicTypes types_;
   std::string truth_topic_;
-  rosbag::View view_;
   std::vector<vins_msgs::ImageConverter> converters_;  ///< one per image topic
-  std::deque<rosbag::MessageInstance> messages_;       ///< places in the bag, by arrival
+  std::vector<Place> messages_;                        ///< by arrival
+  std::map<const BagFile*, Stamp> reached_;            ///< the latest arrival that could be read
   StampOrder order_;                                   ///< of `messages_`
   std::size_t next_ = 0;
 };
 
-}  // namespace
-
-namespace {
-
-/// Calls `open`, and says in words what kept a bag from being read.
-template <typename Open>
-auto explainingFailure(const std::string& path, Open open) -> decltype(open()) {
-  try {
-    return open();
-  } catch (const rosbag::BagUnindexedException&) {
-    throw InputError(path + ": has no index, because its recording did not end in order; run " +
-                     "'rosbag reindex' on it");
-  } catch (const rosbag::BagException& error) {
-    throw InputError(path + ": cannot be read as a bag: " + error.what());
+void requireOnce(const std::vector<std::string>& paths) {
+  std::set<std::filesystem::path> known;
+  for (const std::string& path : paths) {
+    if (!known.insert(std::filesystem::canonical(path)).second) {
+      throw InputError(path + ": is given twice");
+    }
   }
 }
 
 }  // namespace
 
-std::unique_ptr<Recording> openBagRecording(const std::string& path,
+std::unique_ptr<Recording> openBagRecording(const std::vector<std::string>& paths,
                                             const RecordingSelection& selection) {
   selection.validate();
-  return explainingFailure(path, [&]() -> std::unique_ptr<Recording> {
-    return std::make_unique<BagRecording>(path, selection);
-  });
+  if (paths.empty()) throw InputError("recording: no bag is given");
+  requireOnce(paths);
+  return std::make_unique<BagRecording>(paths, selection);
 }
 
-std::unique_ptr<camera_model::Camera> readCameraInfo(const std::string& path,
-                                                     const std::string& topic) {
-  const std::string recorded = topic.rfind('/', 0) == 0 ? topic : "/" + topic;
-  if (!std::filesystem::is_regular_file(path)) {
-    throw InputError(path + ": is no bag, which camera_info_topic '" + topic +
-                     "' needs; allowed: the intrinsics in the file (model_type, ...)");
-  }
-  return explainingFailure(path, [&] {
-    const rosbag::Bag bag(path, rosbag::bagmode::Read);
-    requireTopic(path, typesOf(bag), recorded, {kCameraInfo});
-    rosbag::View view(bag, rosbag::TopicQuery(recorded));
-    const auto message =
-        view.size() > 0 ? view.begin()->instantiate<sensor_msgs::CameraInfo>() : nullptr;
-    if (!message) throw InputError(path + ": has no message that can be read on " + recorded);
-    return vins_msgs::cameraOf(*message, path + ": " + recorded);
-  });
-}
-
-std::unique_ptr<Recording> openRecording(const std::string& path,
+std::unique_ptr<Recording> openRecording(const std::vector<std::string>& paths,
                                          const RecordingSelection& selection) {
-  if (std::filesystem::is_directory(path)) return openAslRecording(path, selection);
-  if (std::filesystem::is_regular_file(path)) return openBagRecording(path, selection);
-  throw InputError(path + ": is not there; allowed: a bag, or a folder in the ASL layout");
+  for (const std::string& path : paths) {
+    if (std::filesystem::is_regular_file(path)) continue;
+    if (!std::filesystem::is_directory(path)) {
+      throw InputError(path + ": is not there; allowed: a bag, or a folder in the ASL layout");
+    }
+    if (paths.size() == 1) return openAslRecording(path, selection);
+    throw InputError(path + ": is a folder; several recordings in a row must be bags");
+  }
+  return openBagRecording(paths, selection);
 }
 
 }  // namespace vins::pipeline

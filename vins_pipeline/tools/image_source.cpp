@@ -52,7 +52,7 @@ std::vector<ImageLoader> imagesOfRecording(const std::string& path,
   RecordingSelection selection;
   selection.imu_topic = options.imu_topic;
   selection.image_topics = {options.image_topic};
-  const std::shared_ptr<Recording> recording = openRecording(path, selection);
+  const std::shared_ptr<Recording> recording = openRecording({path}, selection);
   std::vector<ImageLoader> images;
   std::optional<Stamp> last;
   while (const auto record = recording->next()) {

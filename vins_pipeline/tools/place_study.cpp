@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <map>
 #include <variant>
 
@@ -10,6 +11,7 @@
 #include "vins_core/so3.h"
 #include "vins_core/wall_clock.h"
 #include "vins_pipeline/bag_recording.h"
+#include "vins_pipeline/input_account.h"
 
 namespace vins::pipeline {
 namespace {
@@ -22,7 +24,8 @@ constexpr double kLargestParallax = 0.44;  // [rad], 25 degrees
 /// Runs a recording through the stages and keeps its keyframes.
 class Collector {
  public:
-  explicit Collector(const PipelineOptions& options) : pipeline_(options) {}
+  explicit Collector(const PipelineOptions& options)
+      : pipeline_(options), size_(options.cameras.front()->imageSize()) {}
 
   void feed(const Record& record) {
     if (const auto* sample = std::get_if<ImuSample>(&record.data)) {
@@ -31,13 +34,14 @@ class Collector {
       const bool is_next = truth_.empty() || truth->stamp > truth_.poses().back().stamp;
       if (truth->has_rotation && is_next) truth_.append({truth->stamp, truth->T_wb});
     } else {
-      const auto& image = std::get<RecordedImage>(record.data);
-      const cv::Mat pixels = image.load();
-      images_[image.stamp] = pixels;
-      pipeline_.addImage(image.stamp, pixels);
+      addImage(std::get<RecordedImage>(record.data));
     }
     work();
   }
+
+  /// Which images could be used, and why others could not.
+  const InputAccount& inputs() const { return inputs_; }
+  const std::vector<std::string>& refusals() const { return refusals_; }
 
   std::vector<StudiedKeyframe> finish() {
     pipeline_.finish();
@@ -53,6 +57,21 @@ class Collector {
   }
 
  private:
+  /// An image that cannot be used costs that image only.
+  void addImage(const RecordedImage& image) {
+    try {
+      const cv::Mat pixels = image.load();
+      if (pixels.cols != size_.width || pixels.rows != size_.height) {
+        throw InputError("found an image of another size than the configuration's camera");
+      }
+      inputs_.addImage(image.stamp);
+      images_[image.stamp] = pixels;
+      pipeline_.addImage(image.stamp, pixels);
+    } catch (const InputError& error) {
+      refusals_.push_back(inputs_.refuse(image.stamp, error.what()).text);
+    }
+  }
+
   void work() {
     while (const auto result = pipeline_.process()) {
       for (const estimator::EstimatorResult& estimate : result->estimates) {
@@ -78,10 +97,19 @@ class Collector {
   }
 
   Pipeline pipeline_;
+  camera_model::ImageSize size_;
+  InputAccount inputs_;
+  std::vector<std::string> refusals_;
   Trajectory truth_;
   std::map<Stamp, cv::Mat> images_;
   std::vector<StudiedKeyframe> keyframes_;
 };
+
+void tellRefused(const std::vector<std::string>& reasons, const RecordingSummary& recording) {
+  if (reasons.empty()) return;
+  for (const std::string& reason : reasons) std::cerr << "warning: " << reason << "\n";
+  std::cout << "refused: " << reasons.size() << " of " << recording.images << " images\n";
+}
 
 bool isExcluded(const std::vector<StudiedKeyframe>& keyframes, std::size_t query, std::size_t old,
                 const pose_graph::LoopDetectorOptions& options) {
@@ -139,7 +167,7 @@ std::vector<StudiedKeyframe> collectKeyframes(const PipelineOptions& options,
   selection.image_topics = {options.image_topics.front()};
   selection.start = start;
   selection.duration = duration;
-  const auto opened = openRecording(recording, selection);
+  const auto opened = openRecording({recording}, selection);
   Collector collector(options);
   const Stamp begin = opened->summary().begin, end = opened->summary().end;
   const auto milliseconds = [begin](Stamp stamp) {
@@ -150,8 +178,10 @@ std::vector<StudiedKeyframe> collectKeyframes(const PipelineOptions& options,
     collector.feed(*record);
     bar.update(milliseconds(record->arrival));
   }
+  collector.inputs().requireImages();
   auto keyframes = collector.finish();
   bar.finish(std::to_string(keyframes.size()) + " keyframes");
+  tellRefused(collector.refusals(), opened->summary());
   if (keyframes.empty()) throw InputError(recording + ": gave no keyframes with ground truth");
   return keyframes;
 }

@@ -10,7 +10,8 @@ namespace vins::pipeline {
 namespace {
 
 /// What camera_info_topic says against the file's camera; empty where they agree.
-std::string compareWithCameraInfo(const std::string& recording, const PipelineOptions& options) {
+std::string compareWithCameraInfo(const std::vector<std::string>& recording,
+                                  const PipelineOptions& options) {
   const std::string& topic = options.camera_info_topic;
   if (topic.empty()) return "";
   try {
@@ -23,14 +24,15 @@ std::string compareWithCameraInfo(const std::string& recording, const PipelineOp
 
 }  // namespace
 
-PipelineOptions readOptionsForRecording(const std::string& config, const std::string& recording,
+PipelineOptions readOptionsForRecording(const std::string& config,
+                                        const std::vector<std::string>& recording,
                                         std::vector<std::string>* warnings) {
   PipelineOptions options = readPipelineOptions(
       config, warnings,
       [&recording](const std::string& topic) { return readCameraInfo(recording, topic); });
   const std::string difference = compareWithCameraInfo(recording, options);
   if (!difference.empty()) warnings->push_back(difference);
-  if (std::filesystem::is_directory(recording)) options.accel_topic.clear();
+  if (std::filesystem::is_directory(recording.front())) options.accel_topic.clear();
   return options;
 }
 

@@ -71,7 +71,7 @@ vins::pipeline::RecordingSelection selectionOf(const po::variables_map& values,
 vins::pipeline::PipelineOptions readConfig(const po::variables_map& values) {
   std::vector<std::string> warnings;
   vins::pipeline::PipelineOptions options = vins::pipeline::readOptionsForRecording(
-      values["config"].as<std::string>(), values["bag"].as<std::string>(), &warnings);
+      values["config"].as<std::string>(), values["bag"].as<std::vector<std::string>>(), &warnings);
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << "\n";
   // The result must not depend on the computer's speed.
   options.estimator.max_solver_time = 0.0;
@@ -320,7 +320,7 @@ vins::ToolExit runBag(const po::variables_map& values) {
   if (!run.maps.file_to_save.empty() && !run.options.loops.is_on) {
     throw vins::InputError("--save-map: a map needs loop closing, which is off");
   }
-  run.recording = vins::pipeline::openRecording(values["bag"].as<std::string>(),
+  run.recording = vins::pipeline::openRecording(values["bag"].as<std::vector<std::string>>(),
                                                 selectionOf(values, run.options));
   run.reached = run.recording->summary().begin;
   if (values.count("draw-tracks") > 0) {
@@ -350,7 +350,8 @@ po::options_description describeOptions() {
   auto add = options.add_options();
   add("config", po::value<std::string>()->required(),
       "configuration of the rig, in VINS-Mono's form");
-  add("bag", po::value<std::string>()->required(), "a ROS bag, or a folder in the ASL layout");
+  add("bag", po::value<std::vector<std::string>>()->required(),
+      "a ROS bag, the bags of a recording that was split, or a folder in the ASL layout");
   add("out", po::value<std::string>()->default_value("run_bag_output"),
       "folder to write to; it is made");
   add("start", po::value<double>()->default_value(0.0), "how much to skip at the start [s]");
@@ -378,10 +379,11 @@ int main(int argc, char** argv) {
       "run_bag",
       "Visual-inertial odometry and loop closing on a recording, as fast as the machine allows.\n"
       "Nothing is dropped, and the same recording gives the same bytes.\n"
-      "Usage: run_bag CONFIG BAG [options]\n"
-      "Example: run_bag config/euroc/euroc_config.yaml MH_01_easy.bag --out mh01\n",
+      "Usage: run_bag CONFIG BAG ... [options]\n"
+      "Example: run_bag config/euroc/euroc_config.yaml MH_01_easy.bag --out mh01\n"
+      "         run_bag rig.yaml walk_*.bag     (rosbag record --split; walk.bag.active, too)\n",
       describeOptions(),
-      {{"config", 1}, {"bag", 1}},
+      {{"config", 1}, {"bag", -1}},
       "Written to the folder: vio_live.txt (TUM, each pose as it was known at its\n"
       "frame), loop_live.txt (corrected by the loops known then), loop_final.txt (by all\n"
       "loops), vins_result_no_loop.csv and vins_result_loop.csv (VINS-Mono's form),\n"

@@ -48,6 +48,15 @@ void thinOut(std::size_t most, ImageDescriptors* images) {
   }
 }
 
+/// Throws InputError with the first reason where no image could be read.
+void tellRefused(const std::vector<std::string>& refused, std::size_t all) {
+  if (refused.empty()) return;
+  if (refused.size() == all) throw vins::InputError(refused.front());
+  for (const std::string& reason : refused) std::cerr << "warning: " << reason << "\n";
+  std::cout << "refused: " << refused.size() << " of " << all << " images\n";
+}
+
+/// Of all images that can be read; one that cannot costs itself only and is told.
 ImageDescriptors describe(const std::vector<vins::pipeline::ImageLoader>& images,
                           const po::variables_map& values) {
   const vins::pose_graph::BriefExtractor brief(
@@ -58,13 +67,19 @@ ImageDescriptors describe(const std::vector<vins::pipeline::ImageLoader>& images
   corners.validate();
   ImageDescriptors descriptors;
   auto bar = vins::ProgressBar::onStandardError("describing images", images.size());
+  std::vector<std::string> refused;
   for (const auto& load : images) {
-    const cv::Mat image = load();
-    descriptors.push_back(
-        brief.describe(image, vins::pose_graph::findSpreadCorners(image, {}, corners)).descriptors);
-    bar.update(descriptors.size());
+    try {
+      const cv::Mat image = load();
+      const auto found = vins::pose_graph::findSpreadCorners(image, {}, corners);
+      descriptors.push_back(brief.describe(image, found).descriptors);
+    } catch (const vins::InputError& error) {
+      refused.push_back(error.what());
+    }
+    bar.update(descriptors.size() + refused.size());
   }
   bar.finish();
+  tellRefused(refused, images.size());
   thinOut(values["max-descriptors"].as<std::size_t>(), &descriptors);
   return descriptors;
 }

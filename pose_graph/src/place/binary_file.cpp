@@ -2,13 +2,15 @@
 
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "vins_core/input_error.h"
 
 namespace vins::pose_graph {
 
 std::string readBytes(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": is no file");
+  std::error_code error;  // also where the name is none that the file system takes
+  if (!std::filesystem::is_regular_file(path, error)) throw InputError(path + ": is no file");
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   const std::streamoff length = in.tellg();
   std::string bytes(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');

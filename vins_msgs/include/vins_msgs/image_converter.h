@@ -17,8 +17,8 @@ class ImageConverter {
   /// vins::InputError naming size, encoding and reason.
   cv::Mat toGrey(const sensor_msgs::Image& message);
 
-  /// Accepts each format that OpenCV decodes (JPEG, PNG with 8 or 16 bits). Throws vins::InputError
-  /// naming format and size.
+  /// Accepts what ROS compresses to: JPEG, and PNG with 8 or 16 bits, of at most 2^25 pixels.
+  /// Throws vins::InputError naming format, size and reason.
   cv::Mat toGrey(const sensor_msgs::CompressedImage& message);
 
  private:

@@ -68,6 +68,8 @@ struct RecordingSummary {
   std::size_t truth_poses = 0;
   /// Up to where the file could be read and why no further; empty where it is whole.
   std::string damage;
+  /// Up to where a recording goes that was ended by force; empty where it was closed.
+  std::string interruption;
   std::string truth_source;  ///< topic or folder of the ground truth; empty where there is none
 
   double duration() const { return toSeconds(end - begin); }
