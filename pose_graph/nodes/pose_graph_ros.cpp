@@ -318,7 +318,7 @@ void PoseGraphRos::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("sequences", statistics_.sequences);
   status.add("loops", statistics_.loops);
   status.add("loops refined", statistics_.refined);
-  status.add("candidates rejected", statistics_.rejected);
+  status.add("candidates rejected", statistics_.describeRejected());
   status.add("optimizations", statistics_.optimizations);
   status.add("memory [MB]", 1e-6 * static_cast<double>(statistics_.memory));
   status.add("messages waiting", queue_.size());

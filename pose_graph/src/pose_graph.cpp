@@ -63,6 +63,16 @@ std::size_t graphMemory(const KeyframeGraph& graph) {
 
 }  // namespace
 
+std::string PoseGraphStatistics::describeRejected() const {
+  std::size_t sum = 0;
+  std::string reasons;
+  for (const auto& [status, count] : rejected) {
+    sum += count;
+    reasons += (reasons.empty() ? " (" : ", ") + std::to_string(count) + " " + toString(status);
+  }
+  return std::to_string(sum) + " candidates rejected" + (reasons.empty() ? "" : reasons + ")");
+}
+
 PoseGraph::PoseGraph(const PoseGraphOptions& options,
                      std::shared_ptr<const camera_model::Camera> camera, const PlaceModel& places)
     : options_(options),
@@ -145,7 +155,10 @@ LoopFinder::Gate PoseGraph::gateFor(Stamp stamp, std::vector<Event>* events) {
 void PoseGraph::take(const Keyframe& keyframe, LoopSearch search, PoseGraphResult* result) {
   result->search = std::move(search);
   const LoopVerification* accepted = result->search.accepted();
-  counts_.rejected += result->search.checked.size() - (accepted != nullptr ? 1 : 0);
+  for (const CheckedCandidate& checked : result->search.checked) {
+    const LoopStatus status = checked.verification.status;
+    if (status != LoopStatus::kAccepted) ++counts_.rejected[status];
+  }
   if (accepted != nullptr) {
     addFound(keyframe, *accepted, result->search.checked.back().score, result);
   }

@@ -296,5 +296,14 @@ TEST_F(PoseGraphTest, WhatCannotBeIsRefused) {
   EXPECT_THROW(PoseGraph(bad, revisits_.camera, places_), InputError);
 }
 
+TEST(PoseGraphStatistics, TellsWhyCandidatesWereRejected) {
+  PoseGraphStatistics statistics;
+  EXPECT_EQ(statistics.describeRejected(), "0 candidates rejected");
+  statistics.rejected[LoopStatus::kFewMatches] = 90;
+  statistics.rejected[LoopStatus::kFewPoseInliers] = 24;
+  EXPECT_EQ(statistics.describeRejected(),
+            "114 candidates rejected (90 few matches, 24 few pose inliers)");
+}
+
 }  // namespace
 }  // namespace vins::pose_graph

@@ -256,7 +256,7 @@ void printWarnings(const vins::pipeline::RunResults& results) {
 
 void printLoops(const vins::pose_graph::PoseGraphStatistics& graph) {
   std::cout << "loops         " << graph.found << " found, " << graph.refined
-            << " of them refined in the window; " << graph.rejected << " candidates rejected\n"
+            << " of them refined in the window; " << graph.describeRejected() << "\n"
             << "pose graph    " << graph.keyframes << " keyframes, " << graph.skipped
             << " left out, " << graph.sequences << " sequences, " << graph.optimizations
             << " optimizations, " << 1e-6 * static_cast<double>(graph.memory) << " MB\n";

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,9 +69,12 @@ struct PoseGraphStatistics {
   std::size_t loops = 0;     ///< edges in the graph
   std::size_t found = 0;     ///< verified loops
   std::size_t refined = 0;   ///< of these, measured again by the estimator
-  std::size_t rejected = 0;  ///< candidates that the verification has refused
+  std::map<LoopStatus, std::size_t> rejected;  ///< candidates that were refused, by the reason
   std::size_t optimizations = 0;
   std::size_t memory = 0;  ///< of views, index and graph, about [bytes]
+
+  /// "114 candidates rejected (90 few matches, 24 few pose inliers)".
+  std::string describeRejected() const;
 };
 
 /// The third stage: keyframes in, verified loops and the corrected path out. (T. Qin, P. Li, S.
