@@ -124,9 +124,35 @@ TEST(LoopVerifier, RejectsOtherPlaces) {
   }
 }
 
+TEST(LoopVerifier, AcceptsFewMatchesThatAgree) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    LoopScene scene;
+    scene.seed = seed;
+    scene.good = 18;
+    scene.wrong = 6;
+    const LoopVerification found = verify(scene);
+    EXPECT_TRUE(found.isAccepted()) << found.describe();
+    EXPECT_LT((scene.truth().inverse() * found.T_old_query).position.norm(), 0.2);
+    // As many among more that contradict them prove less.
+    scene.wrong = 30;
+    EXPECT_FALSE(verify(scene).isAccepted()) << "seed " << seed;
+  }
+}
+
+TEST(LoopVerifier, RejectsOtherPlacesWithFewMatches) {
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    LoopScene scene;
+    scene.seed = seed;
+    scene.good = 0;
+    scene.wrong = 12 + static_cast<int>(seed % 13);
+    const LoopVerification found = verify(scene);
+    EXPECT_FALSE(found.isAccepted()) << found.describe();
+  }
+}
+
 TEST(LoopVerifier, RejectsFewMatches) {
   LoopScene scene;
-  scene.good = 20;
+  scene.good = 11;
   EXPECT_EQ(verify(scene).status, LoopStatus::kFewMatches);
   EXPECT_EQ(LoopVerifier({}).verify({}, {}).status, LoopStatus::kFewMatches);
 }

@@ -221,10 +221,14 @@ LoopStatus LoopVerifier::judgePose(Problem* problem) const {
 }
 
 LoopStatus LoopVerifier::judge(Problem* problem) const {
-  const auto isFew = [&] {
-    return problem->left.size() < static_cast<std::size_t>(options_.min_inliers);
-  };
   LoopVerification& result = problem->result;
+  const auto isFew = [&] {
+    // A scene with little to see has few matches, of which chance agrees on a third.
+    const auto needed = static_cast<std::size_t>(options_.min_inliers);
+    const std::size_t count = problem->left.size();
+    const bool are_most = count >= needed / 2 && 2 * count > result.matches.size();
+    return count < needed && !are_most;
+  };
   result.matches = matchViews(*problem->query, *problem->old, options_.matching);
   problem->prepare(result.matches);
   if (isFew()) return LoopStatus::kFewMatches;

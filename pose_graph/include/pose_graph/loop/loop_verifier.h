@@ -17,7 +17,8 @@ namespace vins::pose_graph {
 /// What LoopVerifier asks of a loop. Pixels are those at the image's centre.
 struct LoopVerifierOptions {
   MatchOptions matching;
-  int min_inliers = 25;  ///< matches that one pose explains
+  /// Matches that one pose explains; half as many do where they are more than half of all matches.
+  int min_inliers = 25;
   /// From an epipolar plane [px]. Wide: roll and pitch are off by some tenths of a degree, of which
   /// each is 0.8 px at 460 px of focal length.
   double epipolar_threshold = 8.0;
