@@ -226,8 +226,9 @@ LoopStatus LoopVerifier::judge(Problem* problem) const {
     // A scene with little to see has few matches, of which chance agrees on a third.
     const auto needed = static_cast<std::size_t>(options_.min_inliers);
     const std::size_t count = problem->left.size();
+    const bool shows_little = problem->query->points.size() < 4 * needed;
     const bool are_most = count >= needed / 2 && 2 * count > result.matches.size();
-    return count < needed && !are_most;
+    return count < needed && !(shows_little && are_most);
   };
   result.matches = matchViews(*problem->query, *problem->old, options_.matching);
   problem->prepare(result.matches);

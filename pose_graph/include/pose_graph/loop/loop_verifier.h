@@ -17,7 +17,8 @@ namespace vins::pose_graph {
 /// What LoopVerifier asks of a loop. Pixels are those at the image's centre.
 struct LoopVerifierOptions {
   MatchOptions matching;
-  /// Matches that one pose explains; half as many do where they are more than half of all matches.
+  /// Matches that one pose explains; half as many do where they are more than half of all matches,
+  /// and the query has fewer than four times as many points to match.
   int min_inliers = 25;
   /// From an epipolar plane [px]. Wide: roll and pitch are off by some tenths of a degree, of which
   /// each is 0.8 px at 460 px of focal length.
