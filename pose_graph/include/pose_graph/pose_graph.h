@@ -66,9 +66,9 @@ struct PoseGraphStatistics {
   std::size_t skipped = 0;    ///< left out: too near to others
   std::size_t removed = 0;    ///< to keep the graph bounded
   std::size_t sequences = 0;
-  std::size_t loops = 0;     ///< edges in the graph
-  std::size_t found = 0;     ///< verified loops
-  std::size_t refined = 0;   ///< of these, measured again by the estimator
+  std::size_t loops = 0;                       ///< edges in the graph
+  std::size_t found = 0;                       ///< verified loops
+  std::size_t refined = 0;                     ///< of these, measured again by the estimator
   std::map<LoopStatus, std::size_t> rejected;  ///< candidates that were refused, by the reason
   std::size_t optimizations = 0;
   std::size_t memory = 0;  ///< of views, index and graph, about [bytes]

@@ -9,7 +9,7 @@ namespace vins::pose_graph {
 /// What findSpreadCorners() looks for.
 struct SpreadCornersOptions {
   int max_corners = 500;      ///< in an image
-  int fast_threshold = 5;    ///< grey values by which FAST's arc differs from its centre
+  int fast_threshold = 5;     ///< grey values by which FAST's arc differs from its centre
   double min_distance = 6.0;  ///< from the given pixels [px]
   int border = 24;            ///< no corner is nearer to the image's edge [px]
 
