@@ -178,7 +178,7 @@ class Estimator::Implementation {
     const double shift = found->td - rig.td;
     if (std::abs(shift) <= found->sigma) return false;
     const RetimedFrames retimed = initializer_.retime(shared, shift);
-    if (!retimed.frames.empty()) queue_.rewind(retimed.frames.back()->end, retimed.rest);
+    if (!retimed.frames.empty()) queue_.rewind(retimed.frames.back()->end, retimed.samples);
     tracker_.setTimeOffset(found->td, found->sigma);
     TurnCalibratorOptions options = calibratorOptions(options_);
     options.prior.td_sigma = found->sigma;

@@ -82,7 +82,7 @@ TEST_P(Retiming, IsAsIfTheOffsetHadBeenKnownFromTheBeginning) {
   }
 
   // What comes next follows without a hole, and without an overlap.
-  guessed.rewind(retimed.frames.back()->end, retimed.rest);
+  guessed.rewind(retimed.frames.back()->end, retimed.samples);
   const auto next = guessed.next(0.02 + shift);
   ASSERT_TRUE(next.has_value());
   EXPECT_EQ(next->begin, retimed.frames.back()->end);

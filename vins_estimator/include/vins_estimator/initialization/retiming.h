@@ -11,7 +11,7 @@ namespace vins::estimator {
 /// Frames with the IMU samples that lead to them by another time offset.
 struct RetimedFrames {
   std::vector<SharedMeasurements> frames;  ///< of those given, oldest first
-  std::vector<ImuSample> rest;             ///< from the end of the last of them on
+  std::vector<ImuSample> samples;          ///< all that they were cut from
 };
 
 /// Cuts the IMU samples of consecutive frames anew for a time offset that is larger by `shift` [s].
