@@ -46,7 +46,7 @@ nav_msgs::Odometry toOdometry(const PropagatedState& state, const vins_msgs::Fra
   return toOdometry(state.stamp, state, frames);
 }
 
-nav_msgs::Odometry toExtrinsic(Stamp stamp, const RigCalibration& rig, const Matrix7d& covariance,
+nav_msgs::Odometry toExtrinsic(Stamp stamp, const RigCalibration& rig, const RigMatrix& covariance,
                                const vins_msgs::FrameNames& frames) {
   nav_msgs::Odometry message;
   message.header.stamp = vins_msgs::toRosTime(stamp);

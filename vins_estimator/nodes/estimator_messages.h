@@ -20,7 +20,7 @@ nav_msgs::Odometry toOdometry(const PropagatedState& state, const vins_msgs::Fra
 
 /// The camera's pose in `body`, with a covariance about the fixed axes of `body`. `covariance` is
 /// of the rig's errors.
-nav_msgs::Odometry toExtrinsic(Stamp stamp, const RigCalibration& rig, const Matrix7d& covariance,
+nav_msgs::Odometry toExtrinsic(Stamp stamp, const RigCalibration& rig, const RigMatrix& covariance,
                                const vins_msgs::FrameNames& frames);
 
 /// x, y, z clouds in single precision.

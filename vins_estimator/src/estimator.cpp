@@ -72,14 +72,14 @@ class Estimator::Implementation {
 
   std::optional<EstimatorResult> process() {
     std::optional<FrameMeasurements> measurements =
-        queue_.next(tracker_.window().rig.td, options_.rolling_shutter_readout);
+        queue_.next(tracker_.window().rig.td, readout());
     if (!measurements) return std::nullopt;
     EstimatorResult result;
     result.stamp = measurements->frame.stamp;
     moveEvents(queue_.takeEvents(), &result);
     if (measurements->restarted) reset();
     if (status_ == EstimatorStatus::kTracking) checkInterval(*measurements, &result);
-    if (options_.rolling_shutter_readout > 0.0) undoRollingShutter(&*measurements);
+    if (readout() > 0.0) undoRollingShutter(&*measurements);
     const auto shared = std::make_shared<const FrameMeasurements>(*std::move(measurements));
     stillness_.addFrame(shared);
     useLoops(result.stamp);
@@ -154,6 +154,9 @@ class Estimator::Implementation {
     fail("the IMU was silent for too long", {{"gap_s", measurements.longest_gap}}, result);
   }
 
+  /// As known, or as estimated so far; what is left of it is the window's.
+  double readout() const { return std::max(0.0, tracker_.window().rig.readout); }
+
   void undoRollingShutter(FrameMeasurements* measurements) const {
     const SlidingWindow& window = tracker_.window();
     const Eigen::Vector3d bias = window.frames.empty()
@@ -161,7 +164,8 @@ class Estimator::Implementation {
                                      : window.frames.back().state.value().gyroscope_bias;
     std::vector<ImuSample> gyro = measurements->readout;
     for (ImuSample& sample : gyro) sample.angular_velocity -= bias;
-    const RollingShutter shutter{options_.rolling_shutter_readout, options_.image_height,
+    measurements->undone_readout = readout();
+    const RollingShutter shutter{measurements->undone_readout, options_.image_height,
                                  window.rig.T_bc.rotation};
     measurements->frame =
         atFirstRow(measurements->frame, shutter, gyro, meanRate(measurements->imu) - bias);
@@ -218,7 +222,8 @@ class Estimator::Implementation {
     const FrameMeasurements& measurements = *shared;
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
     continuation_.addFrame(measurements);
-    if (tracker_.window().refines_rig && !calibrate(shared, result)) return;
+    const bool calibrates = options_.extrinsic != ExtrinsicMode::kTrusted || options_.estimate_td;
+    if (calibrates && !calibrate(shared, result)) return;
     const bool may_move = !extrinsic_is_known_ || !time_offset_.awaits(result->stamp);
     std::optional<Initialization> initialization = initializer_.addFrame(shared, may_move);
     moveEvents(initializer_.takeEvents(), result);
@@ -262,7 +267,7 @@ class Estimator::Implementation {
     if (!convergence_.take(again->scale_sigma)) return false;
     const WindowFrame& before = tracker_.window().frames.back();
     Preintegration imu(options_.imu, before.state.value().accelerometer_bias,
-                       before.state.value().gyroscope_bias);
+                       before.state.value().gyroscope_bias, tracker_.window().rig.imu);
     imu.integrate(shared->imu);
     moveNewestTo(imu.predict(before.state.value(), tracker_.window().g_w), before.covariance,
                  ratio * ratio, &*again);
@@ -314,7 +319,7 @@ class Estimator::Implementation {
     result->statistics.features = static_cast<int>(measurements.frame.observations.size());
     Odometry odometry;
     odometry.stamp = measurements.frame.stamp;
-    odometry.state = window.frames.back().state.value();
+    odometry.state = window.atImage(window.frames.back());
     odometry.sequence = sequence_;
     reportRate(measurements.imu, &odometry);
     odometry.covariance = window.frames.back().covariance;
@@ -322,7 +327,7 @@ class Estimator::Implementation {
     credible_ = odometry;
     result->landmarks = landmarkPoints(window);
     for (const WindowFrame& frame : window.frames) {
-      result->window.push_back({frame.stamp, frame.state.value()});
+      result->window.push_back({frame.stamp, window.atImage(frame)});
     }
   }
 

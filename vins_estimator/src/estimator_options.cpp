@@ -33,6 +33,21 @@ MotionOnly readMotionOnly(const Parameters& parameters) {
   }
 }
 
+void readSelfCalibration(const Parameters& parameters, EstimatorOptions* options) {
+  const auto flag = [&](const char* key) { return parameters.integerOr(key, 0, {0, 1}) == 1; };
+  const auto sigma = [&](const char* key, double* value) {
+    *value = parameters.numberOr(key, *value, kSigma);
+  };
+  options->estimate_readout = flag("estimate_readout");
+  options->estimate_intrinsics = flag("estimate_intrinsics");
+  options->estimate_imu_intrinsics = flag("estimate_imu_intrinsics");
+  sigma("readout_sigma", &options->readout_sigma);
+  sigma("focal_length_sigma", &options->focal_length_sigma);
+  sigma("principal_point_sigma", &options->principal_point_sigma);
+  sigma("distortion_sigma", &options->distortion_sigma);
+  sigma("imu_intrinsics_sigma", &options->imu_intrinsics_sigma);
+}
+
 const char* toString(ExtrinsicMode mode) {
   switch (mode) {
     case ExtrinsicMode::kTrusted:
@@ -60,11 +75,16 @@ void EstimatorOptions::validate() const {
   requireWithin("estimator", "max_num_iterations", max_num_iterations, kIterations);
   requireWithin("estimator", "max_solver_time", max_solver_time, kSolverTime);
   requireWithin("estimator", "rolling_shutter_tr", rolling_shutter_readout, kReadout);
-  if (rolling_shutter_readout > 0.0)
+  if (rolling_shutter_readout > 0.0 || estimate_readout)
     requireWithin("estimator", "image_height", image_height, kHeight);
   requireWithin("estimator", "extrinsic_rotation_sigma", extrinsic_rotation_sigma, kSigma);
   requireWithin("estimator", "extrinsic_translation_sigma", extrinsic_translation_sigma, kSigma);
   requireWithin("estimator", "td_sigma", td_sigma, kSigma);
+  requireWithin("estimator", "readout_sigma", readout_sigma, kSigma);
+  requireWithin("estimator", "focal_length_sigma", focal_length_sigma, kSigma);
+  requireWithin("estimator", "principal_point_sigma", principal_point_sigma, kSigma);
+  requireWithin("estimator", "distortion_sigma", distortion_sigma, kSigma);
+  requireWithin("estimator", "imu_intrinsics_sigma", imu_intrinsics_sigma, kSigma);
 }
 
 std::ostream& operator<<(std::ostream& out, const EstimatorOptions& options) {
@@ -79,6 +99,14 @@ std::ostream& operator<<(std::ostream& out, const EstimatorOptions& options) {
              << "extrinsic_rotation_sigma: " << options.extrinsic_rotation_sigma << " rad, "
              << "extrinsic_translation_sigma: " << options.extrinsic_translation_sigma << " m, "
              << "td_sigma: " << options.td_sigma << " s\n"
+             << "estimate_readout: " << options.estimate_readout
+             << ", readout_sigma: " << options.readout_sigma << " s\n"
+             << "estimate_intrinsics: " << options.estimate_intrinsics
+             << ", focal_length_sigma: " << options.focal_length_sigma
+             << ", principal_point_sigma: " << options.principal_point_sigma
+             << ", distortion_sigma: " << options.distortion_sigma << "\n"
+             << "estimate_imu_intrinsics: " << options.estimate_imu_intrinsics
+             << ", imu_intrinsics_sigma: " << options.imu_intrinsics_sigma << "\n"
              << "motion_only_ba: " << static_cast<int>(options.motion_only) << "\n"
              << "pixel_noise: " << options.pixel_noise << " px\n"
              << "window_size: " << options.window_size << " keyframes\n"
@@ -105,6 +133,7 @@ EstimatorOptions readEstimatorOptions(const Parameters& parameters, const camera
   options.extrinsic_translation_sigma = parameters.numberOr(
       "extrinsic_translation_sigma", options.extrinsic_translation_sigma, kSigma);
   options.td_sigma = parameters.numberOr("td_sigma", options.td_sigma, kSigma);
+  readSelfCalibration(parameters, &options);
   options.pixel_noise = parameters.numberOr("pixel_noise", options.pixel_noise, kPixelNoise);
   options.window_size = parameters.integerOr("window_size", options.window_size, kWindowSize);
   options.keyframe_parallax =

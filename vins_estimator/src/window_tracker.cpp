@@ -18,14 +18,23 @@ namespace {
 constexpr int kMinMatches = 15;  // of a loop that is worth its place in the window
 
 /// What is known of the rig before anything is seen.
-Matrix7d rigCovariance(const EstimatorOptions& options) {
+RigMatrix rigCovariance(const EstimatorOptions& options) {
   constexpr double kExact = 1e-9;
-  Vector7d sigma = Vector7d::Constant(kExact);
+  RigVector sigma = RigVector::Constant(kExact);
   if (options.extrinsic != ExtrinsicMode::kTrusted) {
     sigma.head<3>().setConstant(options.extrinsic_translation_sigma);
     sigma.segment<3>(3).setConstant(options.extrinsic_rotation_sigma);
   }
-  if (options.estimate_td) sigma(6) = options.td_sigma;
+  if (options.estimate_td) sigma(kTimeOffset) = options.td_sigma;
+  if (options.estimate_readout) sigma(kReadout) = options.readout_sigma;
+  if (options.estimate_intrinsics) {
+    sigma.segment<2>(kIntrinsics).setConstant(options.focal_length_sigma);
+    sigma.segment<2>(kIntrinsics + 2).setConstant(options.principal_point_sigma);
+    sigma.segment<2>(kIntrinsics + 4).setConstant(options.distortion_sigma);
+  }
+  if (options.estimate_imu_intrinsics) {
+    sigma.tail<kRigSize - kImuIntrinsics>().setConstant(options.imu_intrinsics_sigma);
+  }
   return sigma.cwiseAbs2().asDiagonal();
 }
 
@@ -38,18 +47,25 @@ WindowTracker::WindowTracker(const EstimatorOptions& options) : options_(options
 
 void WindowTracker::clear() {
   SlidingWindow fresh;
-  fresh.landmarks = Landmarks(options_.pixel_noise);
+  fresh.landmarks = Landmarks(options_.pixel_noise, options_.image_height);
   fresh.g_w = Eigen::Vector3d(0.0, 0.0, -options_.imu.gravity);
   fresh.rig = window_.rig;
   fresh.rig_covariance = window_.rig_covariance;
   fresh.refines_rig = window_.refines_rig;
+  fresh.rig_variables = window_.rig_variables;
   window_ = std::move(fresh);
   loop_is_new_ = false;
 }
 
 void WindowTracker::forgetRig() {
-  window_.rig = {options_.T_bc, options_.td};
-  window_.refines_rig = options_.extrinsic != ExtrinsicMode::kTrusted || options_.estimate_td;
+  window_.rig = RigCalibration();
+  window_.rig.T_bc = options_.T_bc;
+  window_.rig.td = options_.td;
+  window_.rig.readout = options_.rolling_shutter_readout;
+  window_.rig_variables.camera = options_.estimate_readout || options_.estimate_intrinsics;
+  window_.rig_variables.imu = options_.estimate_imu_intrinsics;
+  window_.refines_rig = options_.extrinsic != ExtrinsicMode::kTrusted || options_.estimate_td ||
+                        window_.rig_variables.camera || window_.rig_variables.imu;
   window_.rig_covariance = rigCovariance(options_);
 }
 
@@ -67,14 +83,20 @@ void WindowTracker::setRig(const TurnCalibration& found) {
     variance.head<3>().setConstant(std::pow(kUnknownTranslation, 2));
   }
   if (options_.estimate_td) {
-    window_.rig.td = found.td;
-    variance(6) = std::pow(kDoubt * found.td_sigma, 2);
+    setTimeOffset(found.td, kDoubt * found.td_sigma);
   }
 }
 
 void WindowTracker::setTimeOffset(double td, double sigma) {
   window_.rig.td = td;
-  window_.rig_covariance(6, 6) = sigma * sigma;
+  // What turns have told is the time of the middle row: with another read-out the first row's is
+  // another.
+  constexpr double kMiddleRow = 0.5;
+  RigMatrix& covariance = window_.rig_covariance;
+  const double readout = covariance(kReadout, kReadout);
+  covariance(kTimeOffset, kTimeOffset) = sigma * sigma + kMiddleRow * kMiddleRow * readout;
+  covariance(kTimeOffset, kReadout) = -kMiddleRow * readout;
+  covariance(kReadout, kTimeOffset) = -kMiddleRow * readout;
 }
 
 void WindowTracker::start(const Initialization& initialization) {
@@ -98,16 +120,18 @@ NavState WindowTracker::append(const FrameMeasurements& measurements, bool stand
   // A rest ends when the images say so: half a second's figures tremble at their bounds.
   const bool has_rested =
       stands_still || (before.has_rested && looksTheSame(window_.landmarks, before.id, id));
-  Preintegration imu(options_.imu, last.accelerometer_bias, last.gyroscope_bias);
+  Preintegration imu(options_.imu, last.accelerometer_bias, last.gyroscope_bias, window_.rig.imu);
   imu.integrate(measurements.imu, has_rested);
   const NavState predicted = imu.predict(last, window_.g_w);
   WindowFrame frame{id, measurements.frame.stamp, WindowState(predicted), std::move(imu)};
   frame.stands_still = stands_still;
   frame.has_rested = has_rested;
   frame.td = window_.rig.td;
+  frame.readout = measurements.undone_readout;
   frame.interval = toSeconds(frame.stamp - before.stamp);
   if (!measurements.imu.empty()) {
     frame.measured_rate = measurements.imu.back().angular_velocity;
+    frame.angular_acceleration = angularAcceleration(measurements.imu);
   }
   if (!options_.first_estimates) frame.state.ignoreFirstEstimates();
   window_.frames.push_back(std::move(frame));
@@ -186,7 +210,7 @@ void WindowTracker::slide(std::uint32_t sequence, EstimatorResult* result) {
   if (window_.frames.size() <= static_cast<std::size_t>(options_.window_size)) return;
   WallClock watch;
   const WindowFrame& leaving = window_.frames.front();
-  if (leaving.keyframe_id >= 0) result->left.push_back(poseUpdateOf(leaving, sequence));
+  if (leaving.keyframe_id >= 0) result->left.push_back(poseUpdateOf(window_, leaving, sequence));
   forgetLeavingLoop(&window_);
   marginalizeOldest(WindowSolverOptions{}.huber, &window_);
   result->statistics.marginalize_seconds = watch.lap();

@@ -93,6 +93,11 @@ TEST_F(ImuFactorTest, JacobiansAreThoseOfNumericDifferences) {
                             return imuResidual(imu_, kGravity, i_, movedMotion(j_, d));
                           },
                           9));
+  check(J.J_intrinsics, numericJacobian(
+                            [&](const VectorXd& d) -> VectorXd {
+                              return imuResidual(imu_, kGravity, i_, j_, imu_.intrinsics() + d);
+                            },
+                            15));
 }
 
 TEST_F(ImuFactorTest, CeresGetsTheWeightedResidualAndJacobians) {
@@ -283,7 +288,7 @@ TEST(PriorFactor, IsLinearInTheDifferences) {
   Random random(3);
   Prior prior;
   const NavState at = random.navState();
-  prior.parts = {{Prior::Kind::kPose, 0, at, {}}, {Prior::Kind::kMotion, 0, at, {}}};
+  prior.parts = {{Prior::Kind::kPose, 0, at, {}, {}}, {Prior::Kind::kMotion, 0, at, {}, {}}};
   prior.A = MatrixXd::Random(7, 15);
   prior.b = VectorXd::Random(7);
   const PriorFactor factor(prior);

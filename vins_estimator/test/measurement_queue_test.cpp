@@ -310,5 +310,15 @@ TEST(MeasurementQueue, RefusesBadOptions) {
   EXPECT_THROW(MeasurementQueue{options}, InputError);
 }
 
+TEST(AngularAcceleration, IsTheSlopeOfTheLastReadings) {
+  std::vector<ImuSample> samples(11);
+  for (int k = 0; k <= 10; ++k) {
+    samples[k].stamp = 5'000'000 * k;
+    samples[k].angular_velocity = {0.1 * k, k < 5 ? 3.0 : 1.0, 0.0};
+  }
+  EXPECT_LT((angularAcceleration(samples) - Eigen::Vector3d(20.0, 0.0, 0.0)).norm(), 1e-9);
+  EXPECT_TRUE(angularAcceleration({}).isZero(0.0));
+}
+
 }  // namespace
 }  // namespace vins::estimator

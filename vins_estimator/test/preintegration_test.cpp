@@ -83,12 +83,13 @@ TEST(Preintegration, CorrectionIsOfFirstOrder) {
 
 TEST(Preintegration, AsksForReintegrationWhenTheBiasMovedFar) {
   Preintegration imu = integrated(wavingSamples(0.5, 200.0));
-  EXPECT_FALSE(imu.needsReintegration(kAccBias_, kGyrBias_));
+  EXPECT_FALSE(imu.needsReintegration(kAccBias_, kGyrBias_, imu.intrinsics()));
   const Vector3d far = kGyrBias_ + Vector3d(0.0, 0.02, 0.0);
-  EXPECT_TRUE(imu.needsReintegration(kAccBias_, far));
-  EXPECT_TRUE(imu.needsReintegration(kAccBias_ + Vector3d(0.0, 0.2, 0.0), kGyrBias_));
+  EXPECT_TRUE(imu.needsReintegration(kAccBias_, far, imu.intrinsics()));
+  EXPECT_TRUE(
+      imu.needsReintegration(kAccBias_ + Vector3d(0.0, 0.2, 0.0), kGyrBias_, imu.intrinsics()));
   imu.reintegrate(kAccBias_, far);
-  EXPECT_FALSE(imu.needsReintegration(kAccBias_, far));
+  EXPECT_FALSE(imu.needsReintegration(kAccBias_, far, imu.intrinsics()));
   const Preintegration anew = integrated(wavingSamples(0.5, 200.0), kAccBias_, far);
   EXPECT_EQ(imu.alpha(), anew.alpha());
   EXPECT_EQ(imu.covariance(), anew.covariance());

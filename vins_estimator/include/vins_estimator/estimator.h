@@ -65,7 +65,7 @@ struct EstimatorResult {
   std::vector<LandmarkPoint> landmarks;  ///< in the newest window
   std::vector<StampedNavState> window;   ///< the frames of the window, oldest first
   RigCalibration rig;                    ///< as configured, or as estimated
-  Matrix7d rig_covariance = Matrix7d::Zero();  ///< of its errors; zero where it is not estimated
+  RigMatrix rig_covariance = RigMatrix::Zero();  ///< of its errors; zero: not estimated
   EstimatorStatistics statistics;
 };
 

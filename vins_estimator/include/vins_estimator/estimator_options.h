@@ -35,6 +35,14 @@ struct EstimatorOptions {
   double extrinsic_rotation_sigma = 0.05;             ///< of a guess of T_bc, per axis [rad]
   double extrinsic_translation_sigma = 0.05;          ///< the same [m]
   double td_sigma = 0.02;                             ///< of a guess of td [s]
+  bool estimate_readout = false;                      ///< rolling_shutter_tr is a first guess
+  bool estimate_intrinsics = false;      ///< focal lengths, principal point, distortion as well
+  bool estimate_imu_intrinsics = false;  ///< scale and misalignment of the IMU's axes
+  double readout_sigma = 0.01;           ///< of a guess of the read-out [s]
+  double focal_length_sigma = 0.01;      ///< relative
+  double principal_point_sigma = 0.01;   ///< over the focal length
+  double distortion_sigma = 0.02;        ///< of k1 and k2
+  double imu_intrinsics_sigma = 0.01;    ///< of each scale and misalignment of the IMU's axes
   double rolling_shutter_readout = 0.0;  ///< of all rows (rolling_shutter_tr); 0: global [s]
   int image_height = 0;                  ///< needed with a rolling shutter [px]
   MotionOnly motion_only = MotionOnly::kWhenBehind;  ///< motion_only_ba

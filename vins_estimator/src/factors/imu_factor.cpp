@@ -20,11 +20,11 @@ struct Relative {
 };
 
 Relative relative(const Preintegration& imu, const Vector3d& g_w, const NavState& i,
-                  const NavState& j) {
+                  const NavState& j, const ImuIntrinsics& intrinsics) {
   const double t = imu.duration();
   const Eigen::Quaterniond R_bw = i.T_wb.rotation.conjugate();
   Relative r;
-  r.increments = imu.corrected(i.accelerometer_bias, i.gyroscope_bias);
+  r.increments = imu.corrected(i.accelerometer_bias, i.gyroscope_bias, intrinsics);
   r.position = R_bw * (j.T_wb.position - i.T_wb.position - t * i.v_w - 0.5 * t * t * g_w);
   r.velocity = R_bw * (j.v_w - i.v_w - t * g_w);
   r.rotation = so3::log(r.increments.gamma.conjugate() * R_bw * j.T_wb.rotation);
@@ -44,7 +44,12 @@ void writeJacobian(const Matrix15d& weight, const Eigen::Matrix<double, 15, n>& 
 
 Vector15d imuResidual(const Preintegration& imu, const Vector3d& g_w, const NavState& i,
                       const NavState& j) {
-  const Relative r = relative(imu, g_w, i, j);
+  return imuResidual(imu, g_w, i, j, imu.intrinsics());
+}
+
+Vector15d imuResidual(const Preintegration& imu, const Vector3d& g_w, const NavState& i,
+                      const NavState& j, const ImuIntrinsics& intrinsics) {
+  const Relative r = relative(imu, g_w, i, j, intrinsics);
   Vector15d residual;
   residual << r.position - r.increments.alpha, r.rotation, r.velocity - r.increments.beta,
       j.accelerometer_bias - i.accelerometer_bias, j.gyroscope_bias - i.gyroscope_bias;
@@ -53,7 +58,12 @@ Vector15d imuResidual(const Preintegration& imu, const Vector3d& g_w, const NavS
 
 ImuJacobians imuJacobians(const Preintegration& imu, const Vector3d& g_w, const NavState& i,
                           const NavState& j) {
-  const Relative r = relative(imu, g_w, i, j);
+  return imuJacobians(imu, g_w, i, j, imu.intrinsics());
+}
+
+ImuJacobians imuJacobians(const Preintegration& imu, const Vector3d& g_w, const NavState& i,
+                          const NavState& j, const ImuIntrinsics& intrinsics) {
+  const Relative r = relative(imu, g_w, i, j, intrinsics);
   const Matrix3d R_bw = i.T_wb.rotation.conjugate().toRotationMatrix();
   const Matrix3d R_ij = R_bw * j.T_wb.rotation.toRotationMatrix();
   const Matrix3d J_log = so3::rightJacobianInverse(r.rotation);
@@ -72,15 +82,21 @@ ImuJacobians imuJacobians(const Preintegration& imu, const Vector3d& g_w, const 
   out.J_pose_j.block<3, 3>(kRotation, kRotation) = J_log;
 
   const Matrix3d J_gamma_bg = J.block<3, 3>(kRotation, kGyrBias);
-  const Vector3d turned = J_gamma_bg * (i.gyroscope_bias - imu.gyroscopeBias());
+  const auto& J_intrinsics = imu.intrinsicsJacobian();
+  const Vector3d turned = J_gamma_bg * (i.gyroscope_bias - imu.gyroscopeBias()) +
+                          J_intrinsics.middleRows<3>(kRotation) * (intrinsics - imu.intrinsics());
+  const Matrix3d J_turned = -so3::leftJacobianInverse(r.rotation) * so3::rightJacobian(turned);
   out.J_motion_i.setZero();
   out.J_motion_i.block<3, 3>(kPosition, 0) = -imu.duration() * R_bw;
   out.J_motion_i.block<3, 6>(kPosition, 3) = -J.block<3, 6>(kPosition, kAccBias);
-  out.J_motion_i.block<3, 3>(kRotation, kGyrBias - kMotion) =
-      -so3::leftJacobianInverse(r.rotation) * so3::rightJacobian(turned) * J_gamma_bg;
+  out.J_motion_i.block<3, 3>(kRotation, kGyrBias - kMotion) = J_turned * J_gamma_bg;
   out.J_motion_i.block<3, 3>(kVelocity, 0) = -R_bw;
   out.J_motion_i.block<3, 6>(kVelocity, 3) = -J.block<3, 6>(kVelocity, kAccBias);
   out.J_motion_i.block<6, 6>(kAccBias, 3) = -Eigen::Matrix<double, 6, 6>::Identity();
+
+  out.J_intrinsics.setZero();
+  out.J_intrinsics.topRows<9>() = -J_intrinsics;
+  out.J_intrinsics.middleRows<3>(kRotation) = J_turned * J_intrinsics.middleRows<3>(kRotation);
 
   out.J_motion_j.setZero();
   out.J_motion_j.block<3, 3>(kVelocity, 0) = R_bw;
@@ -105,10 +121,10 @@ bool ImuFactor::Evaluate(double const* const* parameters, double* residuals,
   const NavState i = toNavState(parameters[0], parameters[1]);
   const NavState j = toNavState(parameters[2], parameters[3]);
   const Matrix15d& weight = imu_.sqrtInformation();
-  Eigen::Map<Vector15d>(residuals).noalias() = weight * imuResidual(imu_, g_w_, i, j);
+  Eigen::Map<Vector15d>(residuals).noalias() = weight * imuResidual(imu_, g_w_, i, j, intrinsics_);
   if (jacobians == nullptr) return true;
   const ImuJacobians J =
-      imuJacobians(imu_, g_w_, i_.linearizationPoint(i), j_.linearizationPoint(j));
+      imuJacobians(imu_, g_w_, i_.linearizationPoint(i), j_.linearizationPoint(j), intrinsics_);
   if (jacobians[0] != nullptr) writeJacobian<6>(weight, J.J_pose_i, jacobians[0]);
   if (jacobians[1] != nullptr) writeJacobian<9>(weight, J.J_motion_i, jacobians[1]);
   if (jacobians[2] != nullptr) writeJacobian<6>(weight, J.J_pose_j, jacobians[2]);

@@ -24,7 +24,7 @@ int Prior::Part::size() const {
     case Kind::kMotion:
       return 9;
     case Kind::kRig:
-      return 7;
+      return rig_variables.size();
   }
   return 0;
 }
@@ -37,7 +37,9 @@ int Prior::columns() const {
 
 Eigen::VectorXd priorDifference(const Prior::Part& part, const NavState& state,
                                 const RigCalibration& rig) {
-  if (part.kind == Prior::Kind::kRig) return minus(rig, part.rig_at);
+  if (part.kind == Prior::Kind::kRig) {
+    return selected(part.rig_variables, minus(rig, part.rig_at));
+  }
   const Vector15d d = minus(state, part.at);
   return part.kind == Prior::Kind::kMotion ? Eigen::VectorXd(d.tail<9>())
                                            : Eigen::VectorXd(d.head<6>());

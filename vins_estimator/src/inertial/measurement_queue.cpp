@@ -28,6 +28,16 @@ void MeasurementQueueOptions::validate() const {
   requireWithin("measurement queue", "event_interval", event_interval, {0.0, 1e6});
 }
 
+Eigen::Vector3d angularAcceleration(const std::vector<ImuSample>& samples) {
+  constexpr double kSpan = 0.02;  // [s]
+  if (samples.size() < 2) return Eigen::Vector3d::Zero();
+  const ImuSample& last = samples.back();
+  std::size_t first = samples.size() - 2;
+  while (first > 0 && toSeconds(last.stamp - samples[first].stamp) < kSpan) --first;
+  const double span = toSeconds(last.stamp - samples[first].stamp);
+  return (last.angular_velocity - samples[first].angular_velocity) / std::max(span, 1e-4);
+}
+
 MeasurementQueue::MeasurementQueue(const MeasurementQueueOptions& options)
     : options_(options), period_(1.0 / options.imu_rate) {
   options_.validate();

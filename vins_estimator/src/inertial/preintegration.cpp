@@ -13,12 +13,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A reading with the biases taken off.
-struct Unbiased {
-  Vector3d a;
-  Vector3d w;
-};
-
 /// One midpoint step of the increments and what its derivatives need.
 struct Midpoint {
   double dt;
@@ -26,8 +20,10 @@ struct Midpoint {
   Matrix3d R_to;    ///< and after it
   Matrix3d turn;    ///< rotation of the step
   Matrix3d J_r;     ///< right Jacobian of the step's rotation vector
-  Vector3d a_from;
+  Vector3d a_from;  ///< true specific forces
   Vector3d a_to;
+  Matrix3d gain_a;  ///< of the sensors' axes
+  Matrix3d gain_w;
 };
 
 /// d(error after) / d(error before), first order in the errors and exact in the step. The biases
@@ -37,19 +33,40 @@ Matrix15d transition(const Midpoint& m) {
   // The velocity's error by the rotation's: the second reading is turned by the new rotation.
   const Matrix3d J_v_theta =
       -half * (m.R_from * so3::hat(m.a_from) + m.R_to * so3::hat(m.a_to) * m.turn.transpose());
-  const Matrix3d J_v_bg = half * m.R_to * so3::hat(m.a_to) * m.J_r * m.dt;
-  const Matrix3d J_v_ba = -half * (m.R_from + m.R_to);
+  const Matrix3d J_v_bg = half * m.R_to * so3::hat(m.a_to) * m.J_r * m.dt * m.gain_w;
+  const Matrix3d J_v_ba = -half * (m.R_from + m.R_to) * m.gain_a;
   Matrix15d F = Matrix15d::Identity();
   F.block<3, 3>(kPosition, kRotation) = half * J_v_theta;
   F.block<3, 3>(kPosition, kVelocity) = m.dt * Matrix3d::Identity();
   F.block<3, 3>(kPosition, kAccBias) = half * J_v_ba;
   F.block<3, 3>(kPosition, kGyrBias) = half * J_v_bg;
   F.block<3, 3>(kRotation, kRotation) = m.turn.transpose();
-  F.block<3, 3>(kRotation, kGyrBias) = -m.J_r * m.dt;
+  F.block<3, 3>(kRotation, kGyrBias) = -m.J_r * m.dt * m.gain_w;
   F.block<3, 3>(kVelocity, kRotation) = J_v_theta;
   F.block<3, 3>(kVelocity, kAccBias) = J_v_ba;
   F.block<3, 3>(kVelocity, kGyrBias) = J_v_bg;
   return F;
+}
+
+/// Readings of a step without their biases.
+struct Readings {
+  Vector3d a_from;
+  Vector3d a_to;
+  Vector3d w;  ///< mean
+};
+
+/// d(alpha, theta, beta after the step) by the errors of the axes, as far as the step makes them.
+Eigen::Matrix<double, 9, 15> intrinsicsStep(const Midpoint& m, const Readings& r) {
+  const double half = 0.5 * m.dt;
+  constexpr int kAcc = kAccelerometerIntrinsics;
+  Eigen::Matrix<double, 9, 15> J = Eigen::Matrix<double, 9, 15>::Zero();
+  J.block<3, kAcc>(kVelocity, 0) = half * (m.R_from * accelerometerGainJacobian(r.a_from) +
+                                           m.R_to * accelerometerGainJacobian(r.a_to));
+  const Eigen::Matrix<double, 3, 9> J_turn = m.dt * m.J_r * gyroscopeGainJacobian(r.w);
+  J.block<3, 9>(kRotation, kAcc) = J_turn;
+  J.block<3, 9>(kVelocity, kAcc) = -half * m.R_to * so3::hat(m.a_to) * J_turn;
+  J.middleRows<3>(kPosition) = half * J.middleRows<3>(kVelocity);
+  return J;
 }
 
 /// Motion of a deviation s at a frequency f, drawn as a straight line over dt, is missed by
@@ -134,8 +151,11 @@ ImuNoise noiseOf(const ImuNoise& usual, const std::vector<ImuSample>& samples) {
 }  // namespace
 
 Preintegration::Preintegration(const ImuNoise& noise, const Vector3d& accelerometer_bias,
-                               const Vector3d& gyroscope_bias)
-    : noise_(noise), accelerometer_bias_(accelerometer_bias), gyroscope_bias_(gyroscope_bias) {}
+                               const Vector3d& gyroscope_bias, const ImuIntrinsics& intrinsics)
+    : noise_(noise),
+      accelerometer_bias_(accelerometer_bias),
+      gyroscope_bias_(gyroscope_bias),
+      intrinsics_(intrinsics) {}
 
 void Preintegration::integrate(const std::vector<ImuSample>& samples, bool at_rest) {
   if (samples.size() < 2) return;
@@ -149,13 +169,20 @@ void Preintegration::append(const Preintegration& next) {
 
 void Preintegration::reintegrate(const Vector3d& accelerometer_bias,
                                  const Vector3d& gyroscope_bias) {
+  reintegrate(accelerometer_bias, gyroscope_bias, ImuIntrinsics(intrinsics_));
+}
+
+void Preintegration::reintegrate(const Vector3d& accelerometer_bias, const Vector3d& gyroscope_bias,
+                                 const ImuIntrinsics& intrinsics) {
   accelerometer_bias_ = accelerometer_bias;
   gyroscope_bias_ = gyroscope_bias;
+  intrinsics_ = intrinsics;
   duration_ = 0.0;
   alpha_.setZero();
   gamma_.setIdentity();
   beta_.setZero();
   jacobian_.setIdentity();
+  intrinsics_jacobian_.setZero();
   covariance_.setZero();
   sqrt_information_known_ = false;
   for (const Piece& piece : pieces_) integratePiece(piece);
@@ -188,7 +215,12 @@ void Preintegration::bridge(const ImuSample& from, const ImuSample& to, const Im
 void Preintegration::step(const ImuSample& from, const ImuSample& to, const ImuNoise& noise,
                           const MissedMotion& missed) {
   const double dt = toSeconds(to.stamp - from.stamp);
-  const Vector3d phi = dt * (0.5 * (from.angular_velocity + to.angular_velocity) - gyroscope_bias_);
+  const Readings readings{from.acceleration - accelerometer_bias_,
+                          to.acceleration - accelerometer_bias_,
+                          0.5 * (from.angular_velocity + to.angular_velocity) - gyroscope_bias_};
+  const Matrix3d gain_a = accelerometerGain(intrinsics_);
+  const Matrix3d gain_w = gyroscopeGain(intrinsics_);
+  const Vector3d phi = dt * (gain_w * readings.w);
   const Eigen::Quaterniond turn = so3::exp(phi);
   const Eigen::Quaterniond gamma = (gamma_ * turn).normalized();
   const Midpoint m{dt,
@@ -196,8 +228,10 @@ void Preintegration::step(const ImuSample& from, const ImuSample& to, const ImuN
                    gamma.toRotationMatrix(),
                    turn.toRotationMatrix(),
                    so3::rightJacobian(phi),
-                   from.acceleration - accelerometer_bias_,
-                   to.acceleration - accelerometer_bias_};
+                   gain_a * readings.a_from,
+                   gain_a * readings.a_to,
+                   gain_a,
+                   gain_w};
   const Vector3d a = 0.5 * (m.R_from * m.a_from + m.R_to * m.a_to);
   alpha_ += dt * beta_ + 0.5 * dt * dt * a;
   beta_ += dt * a;
@@ -205,17 +239,23 @@ void Preintegration::step(const ImuSample& from, const ImuSample& to, const ImuN
   duration_ += dt;
   const Matrix15d F = transition(m);
   jacobian_ = F * jacobian_;
+  intrinsics_jacobian_ =
+      F.topLeftCorner<9, 9>() * intrinsics_jacobian_ + intrinsicsStep(m, readings);
   covariance_ = F * covariance_ * F.transpose() + stepNoise(m, noise, missed, F);
 }
 
 bool Preintegration::needsReintegration(const Vector3d& accelerometer_bias,
-                                        const Vector3d& gyroscope_bias) const {
+                                        const Vector3d& gyroscope_bias,
+                                        const ImuIntrinsics& intrinsics) const {
   // What first order leaves out is of the size of the angle that the gyroscope bias turned by,
   // squared, and of its product with the velocity that the accelerometer bias made.
   constexpr double kAngle = 2e-3;  // [rad]: squared, 4e-6 rad, far below any gyroscope's noise
   constexpr double kSpeed = 0.05;  // [m/s]: times such an angle, 0.1 mm/s
+  const double angle = Eigen::AngleAxisd(gamma_).angle();
+  const ImuIntrinsics d = intrinsics - intrinsics_;
   return (gyroscope_bias - gyroscope_bias_).norm() * duration_ > kAngle ||
-         (accelerometer_bias - accelerometer_bias_).norm() * duration_ > kSpeed;
+         (accelerometer_bias - accelerometer_bias_).norm() * duration_ > kSpeed ||
+         d.tail<9>().norm() * angle > kAngle || d.head<6>().norm() * beta_.norm() > kSpeed;
 }
 
 bool Preintegration::isWeightable() const {
@@ -241,6 +281,21 @@ void Preintegration::computeSqrtInformation() const {
   sqrt_information_ = scale.asDiagonal();
   llt.matrixL().solveInPlace(sqrt_information_);
   is_weightable_ = sqrt_information_.allFinite();
+}
+
+Preintegration::Increments Preintegration::corrected(const Vector3d& accelerometer_bias,
+                                                     const Vector3d& gyroscope_bias,
+                                                     const ImuIntrinsics& intrinsics) const {
+  Increments result = corrected(accelerometer_bias, gyroscope_bias);
+  const ImuIntrinsics change = intrinsics - intrinsics_;
+  if (change.isZero(0.0)) return result;
+  const Eigen::Matrix<double, 9, 1> d = intrinsics_jacobian_ * change;
+  const Vector3d turned =
+      jacobian_.block<3, 3>(kRotation, kGyrBias) * (gyroscope_bias - gyroscope_bias_);
+  result.alpha += d.segment<3>(kPosition);
+  result.gamma = gamma_ * so3::exp(Vector3d(turned + d.segment<3>(kRotation)));
+  result.beta += d.segment<3>(kVelocity);
+  return result;
 }
 
 Preintegration::Increments Preintegration::corrected(const Vector3d& accelerometer_bias,

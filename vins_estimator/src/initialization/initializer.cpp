@@ -237,9 +237,10 @@ Initialization Initializer::toInitialization(const FrameIndices& chosen,
   initialization.sigma.segment<3>(kAccBias).setConstant(joint.accelerometer_bias_sigma);
   initialization.sigma.segment<3>(kGyrBias).setConstant(joint.gyroscope_bias_sigma);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    initialization.frames.push_back({buffer_[chosen[i]]->frame, alignment.solution.states[i],
-                                     alignment.solution.imu[i],
-                                     buffer_[chosen[i]]->imu.back().angular_velocity});
+    initialization.frames.push_back(
+        {buffer_[chosen[i]]->frame, alignment.solution.states[i], alignment.solution.imu[i],
+         buffer_[chosen[i]]->imu.back().angular_velocity,
+         angularAcceleration(buffer_[chosen[i]]->imu), buffer_[chosen[i]]->undone_readout});
   }
   return initialization;
 }

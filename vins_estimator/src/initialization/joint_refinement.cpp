@@ -29,7 +29,8 @@ Prior makePrior(const NavState& first, const JointRefinementOptions& options) {
   unbiased.accelerometer_bias.setZero();
   unbiased.gyroscope_bias.setZero();
   Prior prior;
-  prior.parts = {{Prior::Kind::kPose, 0, first, {}}, {Prior::Kind::kMotion, 0, unbiased, {}}};
+  prior.parts = {{Prior::Kind::kPose, 0, first, {}, {}},
+                 {Prior::Kind::kMotion, 0, unbiased, {}, {}}};
   prior.A = Eigen::MatrixXd::Zero(10, 15);
   prior.A.block<3, 3>(0, kPosition).diagonal().setConstant(1.0 / options.position_sigma);
   const Vector3d up_b = first.T_wb.rotation.conjugate() * Vector3d::UnitZ();

@@ -111,7 +111,8 @@ std::optional<Initialization> initializeAtRest(
   for (const std::size_t index : chosen) {
     Preintegration imu(noise, state.accelerometer_bias, state.gyroscope_bias);
     for (; next <= index; ++next) imu.integrate(interval[next]->imu);
-    initialization.frames.push_back({interval[index]->frame, state, imu});
+    initialization.frames.push_back({interval[index]->frame, state, imu, Eigen::Vector3d::Zero(),
+                                     Eigen::Vector3d::Zero(), interval[index]->undone_readout});
   }
   return initialization;
 }

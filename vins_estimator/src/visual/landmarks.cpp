@@ -5,13 +5,14 @@
 namespace vins::estimator {
 namespace {
 
-TrackObservation toObservation(FrameId frame, const FeatureObservation& feature,
-                               double pixel_noise) {
+TrackObservation toObservation(FrameId frame, const FeatureObservation& feature, double pixel_noise,
+                               int image_height) {
   TrackObservation observation;
   observation.frame = frame;
   observation.measured.bearing = feature.bearing;
   observation.measured.basis = tangentBasis(feature.bearing);
   observation.measured.inverse_sigma = 1.0 / (pixel_noise * feature.angular_resolution);
+  observation.measured.row = image_height > 0 ? feature.pixel.y() / image_height : 0.0;
   observation.pixel = feature.pixel;
   observation.angular_resolution = feature.angular_resolution;
   return observation;
@@ -28,7 +29,7 @@ void moveToHost(std::size_t next, const CameraPoses& cameras, Landmark* landmark
     landmark->has_depth = false;
     return;
   }
-  landmark->anchor = {host.measured.bearing, host.measured.basis};
+  landmark->anchor = {host.measured.bearing, host.measured.basis, host.measured.row};
   landmark->parameters << host.measured.basis.transpose() * p_c / along, 1.0 / along;
 }
 
@@ -60,7 +61,7 @@ void Landmarks::addFrame(FrameId frame, const FeatureFrame& features) {
     // A frame that names a track twice has its first word.
     if (!track.observations.empty() && track.observations.back().frame == frame) continue;
     track.id = feature.id;
-    track.observations.push_back(toObservation(frame, feature, pixel_noise_));
+    track.observations.push_back(toObservation(frame, feature, pixel_noise_, image_height_));
   }
 }
 

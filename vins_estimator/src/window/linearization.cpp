@@ -8,11 +8,24 @@ namespace vins::estimator {
 
 namespace {
 
-/// Where a frame's body was `late` seconds after the frame's time.
-Pose carried(const Pose& T_wb, const Eigen::Matrix<double, 6, 1>& rate, double late) {
-  if (late == 0.0) return T_wb;
-  return {T_wb.rotation * so3::exp(Eigen::Vector3d(late * rate.tail<3>())),
-          T_wb.position + late * rate.head<3>()};
+/// Adds how the frame's camera moves, and its errors as far as they were not undone before.
+void addCamera(const RigCalibration& rig, const Eigen::Matrix<double, 6, 1>& rate,
+               const WindowFrame& frame, ViewGeometry* view) {
+  const Eigen::Vector3d w_b = rate.tail<3>();
+  view->w_c = rig.T_bc.rotation.conjugate() * w_b;
+  view->v_c = view->R_wc.transpose() *
+              (rate.head<3>() + view->R_wb * Eigen::Vector3d(w_b.cross(rig.T_bc.position)));
+  view->a_c = rig.T_bc.rotation.conjugate() * frame.angular_acceleration;
+  view->readout = rig.readout - frame.readout;
+  view->intrinsics = rig.intrinsics;
+}
+
+/// Jacobians by the read-out and by the camera's intrinsics.
+void addCameraJacobians(const BearingMeasurement& measured, const LandmarkAnchor& anchor,
+                        const ViewGeometry& host, const ViewGeometry& target,
+                        const LandmarkParameters& landmark, LinearizedObservation* out) {
+  out->J_rig.col(kReadout) = readoutJacobian(measured, anchor, host, target, landmark);
+  out->J_rig.rightCols<6>() = intrinsicsJacobian(measured, anchor, host, target, landmark);
 }
 
 }  // namespace
@@ -23,15 +36,19 @@ WindowGeometry geometryOf(const SlidingWindow& window, const WindowValues& value
   geometry.present.reserve(views);
   geometry.linearization.reserve(views);
   const Pose& T_bc = values.rig.T_bc;
+  geometry.shows_camera = window.refines_rig && window.rig_variables.camera;
   for (std::size_t i = 0; i < values.states.size(); ++i) {
     const NavState& state = values.states[i];
     const WindowFrame& frame = window.frames[i];
-    Eigen::Matrix<double, 6, 1> rate;
-    rate << state.v_w, frame.measured_rate - state.gyroscope_bias;
     const double late = values.rig.td - frame.td;
+    const Eigen::Matrix<double, 6, 1> rate = bodyRate(frame, state, late);
     geometry.present.push_back(viewGeometry(carried(state.T_wb, rate, late), T_bc));
     geometry.linearization.push_back(
         viewGeometry(carried(frame.state.poseForJacobians(state.T_wb), rate, late), T_bc));
+    if (geometry.shows_camera) {
+      addCamera(values.rig, rate, frame, &geometry.present.back());
+      addCamera(values.rig, rate, frame, &geometry.linearization.back());
+    }
     geometry.td_rates.push_back(rate);
     geometry.shows_rig.push_back(window.refines_rig && !frame.stands_still);
   }
@@ -48,7 +65,9 @@ Eigen::Vector2d observationResidual(const BearingMeasurement& measured,
                                     const LandmarkAnchor& anchor, const WindowGeometry& geometry,
                                     std::size_t host, std::size_t target,
                                     const LandmarkParameters& landmark) {
-  if (host == target) return hostResidual(measured, anchor, landmark, nullptr);
+  if (host == target) {
+    return hostResidual(measured, anchor, geometry.present[host], landmark, nullptr);
+  }
   return bearingResidual(measured, anchor, geometry.present[host], geometry.present[target],
                          landmark, nullptr);
 }
@@ -62,7 +81,10 @@ LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
   out.r = observationResidual(measured, anchor, geometry, host, target, landmark);
   out.J_rig.setZero();
   if (host == target) {
-    hostResidual(measured, anchor, landmark, &out.J_landmark);
+    hostResidual(measured, anchor, geometry.linearization[host], landmark, &out.J_landmark);
+    if (geometry.shows_camera && geometry.shows_rig[host]) {
+      out.J_rig.rightCols<6>() = hostIntrinsicsJacobian(measured, anchor, landmark);
+    }
     out.J_host.setZero();
     out.J_target.setZero();
     return out;
@@ -76,7 +98,12 @@ LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
   if (geometry.shows_rig[target]) {
     out.J_rig.leftCols<6>() = extrinsicJacobian(measured, anchor, geometry.linearization[host],
                                                 geometry.linearization[target], landmark);
-    out.J_rig.col(6) = J.J_host * geometry.td_rates[host] + J.J_target * geometry.td_rates[target];
+    out.J_rig.col(kTimeOffset) =
+        J.J_host * geometry.td_rates[host] + J.J_target * geometry.td_rates[target];
+    if (geometry.shows_camera) {
+      addCameraJacobians(measured, anchor, geometry.linearization[host],
+                         geometry.linearization[target], landmark, &out);
+    }
   }
   return out;
 }

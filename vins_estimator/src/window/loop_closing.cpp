@@ -36,7 +36,7 @@ bool addLoop(const LoopMatch& match, double match_noise, SlidingWindow* window) 
   old.query_id = match.query_id;
   // The old camera counts; the body is the one that the window's calibration hangs on it.
   const Pose T_old_body = match.T_bc_old * window->rig.T_bc.inverse();
-  old.T_wb = query->state.value().T_wb * match.T_old_query.inverse() * T_old_body;
+  old.T_wb = window->atImage(*query).T_wb * match.T_old_query.inverse() * T_old_body;
   old.up_b = (match.T_wb_old * T_old_body).rotation.conjugate() * Eigen::Vector3d::UnitZ();
   for (const MatchedFeature& feature : match.features) {
     const auto track = window->landmarks.tracks().find(feature.id);

@@ -19,8 +19,9 @@ using Eigen::VectorXd;
 /// go; then those of the poses and motions that stay and are touched.
 class Columns {
  public:
-  Columns(std::size_t frames, bool refines_rig)
-      : pose_(frames, -1), motion_(frames, -1), rig_(refines_rig ? 0 : -1) {}
+  /// `rig_size`: number of the rig's variables; 0: it is not refined.
+  Columns(std::size_t frames, Index rig_size)
+      : pose_(frames, -1), motion_(frames, -1), rig_(rig_size > 0 ? 0 : -1), rig_size_(rig_size) {}
 
   void touchPose(std::size_t frame) { pose_[frame] = 0; }
   void touchMotion(std::size_t frame) { motion_[frame] = 0; }
@@ -31,11 +32,12 @@ class Columns {
       if (pose_[frame] >= 0) take(6, &pose_[frame]);
       if (motion_[frame] >= 0) take(9, &motion_[frame]);
     }
-    if (rig_ >= 0) take(7, &rig_);
+    if (rig_ >= 0) take(rig_size_, &rig_);
   }
   Index pose(std::size_t frame) const { return pose_[frame]; }
   Index motion(std::size_t frame) const { return motion_[frame]; }
   Index rig() const { return rig_; }  ///< negative where the rig is not refined
+  Index rigSize() const { return rig_size_; }
   Index of(const Prior::Part& part) const {
     if (part.kind == Prior::Kind::kRig) return rig_;
     return part.kind == Prior::Kind::kMotion ? motion_[part.frame] : pose_[part.frame];
@@ -50,6 +52,7 @@ class Columns {
   std::vector<Index> pose_;
   std::vector<Index> motion_;
   Index rig_;
+  Index rig_size_;
   Index count_ = 0;
 };
 
@@ -78,7 +81,7 @@ std::vector<std::int64_t> landmarksToMarginalize(const SlidingWindow& window) {
 }
 
 Columns layOut(const SlidingWindow& window, const std::vector<LinearizedLandmark>& landmarks) {
-  Columns columns(window.frames.size(), window.refines_rig);
+  Columns columns(window.frames.size(), window.refines_rig ? window.rig_variables.size() : 0);
   for (const Prior::Part& part : window.prior.parts) {
     if (part.kind == Prior::Kind::kPose) columns.touchPose(part.frame);
     if (part.kind == Prior::Kind::kMotion) columns.touchMotion(part.frame);
@@ -108,14 +111,19 @@ void stackImu(const SlidingWindow& window, const Columns& columns, StackedSystem
   const WindowFrame& j = window.frames[1];
   const ImuJacobians J =
       imuJacobians(j.imu, window.g_w, i.state.linearizationPoint(i.state.value()),
-                   j.state.linearizationPoint(j.state.value()));
+                   j.state.linearizationPoint(j.state.value()), window.rig.imu);
   const Matrix15d& weight = j.imu.sqrtInformation();
-  const Vector15d r = imuResidual(j.imu, window.g_w, i.state.value(), j.state.value());
+  const Vector15d r =
+      imuResidual(j.imu, window.g_w, i.state.value(), j.state.value(), window.rig.imu);
   auto rows = system->next(15);
   rows.middleCols<6>(columns.pose(0)) = weight * J.J_pose_i;
   rows.middleCols<9>(columns.motion(0)) = weight * J.J_motion_i;
   rows.middleCols<6>(columns.pose(1)) = weight * J.J_pose_j;
   rows.middleCols<9>(columns.motion(1)) = weight * J.J_motion_j;
+  if (columns.rig() >= 0 && window.rig_variables.imu) {
+    rows.middleCols<15>(columns.rig() + window.rig_variables.cameraSize()) =
+        weight * J.J_intrinsics;
+  }
   rows.rightCols<1>() = weight * r;
 }
 
@@ -144,7 +152,7 @@ void stackRest(const SlidingWindow& window, const Columns& columns, StackedSyste
 }
 
 /// Stacks a landmark's rows, freed of the landmark: QR of its own three columns, whose rows go.
-void stackLandmark(const LinearizedLandmark& landmark, const Columns& columns,
+void stackLandmark(const LinearizedLandmark& landmark, const Columns& columns, Index rig_size,
                    StackedSystem* system) {
   const auto count = static_cast<Index>(landmark.observations.size());
   MatrixXd J_landmark(2 * count, 3);
@@ -155,7 +163,9 @@ void stackLandmark(const LinearizedLandmark& landmark, const Columns& columns,
     J_landmark.middleRows<2>(2 * i) = o.J_landmark;
     rows.block<2, 6>(2 * i, host) += o.J_host;
     rows.block<2, 6>(2 * i, columns.pose(o.target)) += o.J_target;
-    if (columns.rig() >= 0) rows.block<2, 7>(2 * i, columns.rig()) = o.J_rig;
+    if (columns.rig() >= 0) {
+      rows.block(2 * i, columns.rig(), 2, rig_size) = o.J_rig.leftCols(rig_size);
+    }
     rows.block<2, 1>(2 * i, rows.cols() - 1) = o.r;
   }
   const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(J_landmark);
@@ -185,7 +195,8 @@ void shiftToFirstEstimates(const SlidingWindow& window, const Columns& columns, 
     }
   }
   if (columns.rig() >= 0) {
-    rows.rightCols<1>() -= rows.middleCols<7>(columns.rig()) * minus(window.rig, rigZero(window));
+    rows.rightCols<1>() -= rows.middleCols(columns.rig(), columns.rigSize()) *
+                           selected(window.rig_variables, minus(window.rig, rigZero(window)));
   }
 }
 
@@ -204,7 +215,9 @@ StackedSystem stackAll(const SlidingWindow& window, const Columns& columns,
   stackImu(window, columns, &system);
   stackStillness(window, columns, &system);
   stackRest(window, columns, &system);
-  for (const auto& landmark : landmarks) stackLandmark(landmark, columns, &system);
+  for (const auto& landmark : landmarks) {
+    stackLandmark(landmark, columns, window.rig_variables.cameraSize(), &system);
+  }
   shiftToFirstEstimates(window, columns, first_row, &system);
   return system;
 }
@@ -224,13 +237,15 @@ Prior eliminateOldest(const SlidingWindow& window, const Columns& columns, Stack
   for (std::size_t frame = 1; frame < window.frames.size(); ++frame) {
     const NavState& at = window.frames[frame].state.firstEstimate();
     if (columns.pose(frame) >= 0) {
-      prior.parts.push_back({Prior::Kind::kPose, frame - 1, at, {}});
+      prior.parts.push_back({Prior::Kind::kPose, frame - 1, at, {}, {}});
     }
     if (columns.motion(frame) >= 0) {
-      prior.parts.push_back({Prior::Kind::kMotion, frame - 1, at, {}});
+      prior.parts.push_back({Prior::Kind::kMotion, frame - 1, at, {}, {}});
     }
   }
-  if (columns.rig() >= 0) prior.parts.push_back({Prior::Kind::kRig, 0, {}, rigZero(window)});
+  if (columns.rig() >= 0) {
+    prior.parts.push_back({Prior::Kind::kRig, 0, {}, rigZero(window), window.rig_variables});
+  }
   return prior;
 }
 

@@ -9,6 +9,7 @@
 #include "vins_estimator/factors/bearing_factor.h"
 #include "vins_estimator/factors/imu_factor.h"
 #include "vins_estimator/factors/parameter_blocks.h"
+#include "vins_estimator/window/linearization.h"
 
 namespace vins::estimator {
 namespace {
@@ -24,7 +25,11 @@ std::size_t newestKeyframe(const SlidingWindow& window) {
 class NewestFrames {
  public:
   NewestFrames(const SlidingWindow& window, double huber)
-      : window_(window), anchor_(newestKeyframe(window)), loss_(huber), problem_(options()) {
+      : window_(window),
+        geometry_(geometryOf(window, window.values())),
+        anchor_(newestKeyframe(window)),
+        loss_(huber),
+        problem_(options()) {
     for (const WindowFrame& frame : window.frames) {
       poses_.push_back(toPoseBlock(frame.state.value().T_wb));
       motions_.push_back(toMotionBlock(frame.state.value()));
@@ -80,10 +85,10 @@ class NewestFrames {
     addPose(frame - 1);
     addPose(frame);
     const auto& frames = window_.frames;
-    problem_.AddResidualBlock(
-        new ImuFactor(frames[frame].imu, window_.g_w, frames[frame - 1].state, frames[frame].state),
-        nullptr, poses_[frame - 1].data(), motions_[frame - 1].data(), poses_[frame].data(),
-        motions_[frame].data());
+    problem_.AddResidualBlock(new ImuFactor(frames[frame].imu, window_.g_w, frames[frame - 1].state,
+                                            frames[frame].state, window_.rig.imu),
+                              nullptr, poses_[frame - 1].data(), motions_[frame - 1].data(),
+                              poses_[frame].data(), motions_[frame].data());
   }
 
   /// What the frames that move see of a landmark of a frame that does not.
@@ -99,13 +104,15 @@ class NewestFrames {
       addPose(host);
       problem_.AddResidualBlock(
           new BearingFactor(o.measured, landmark.anchor, window_.rig.T_bc,
-                            window_.frames[host].state, window_.frames[target].state),
+                            window_.frames[host].state, window_.frames[target].state,
+                            geometry_.present[host], geometry_.present[target]),
           &loss_, poses_[host].data(), poses_[target].data(), landmarks_.back().data());
       ++observations_;
     }
   }
 
   const SlidingWindow& window_;
+  WindowGeometry geometry_;
   std::size_t anchor_;
   ceres::HuberLoss loss_;
   PoseManifold manifold_;

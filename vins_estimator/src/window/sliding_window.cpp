@@ -2,7 +2,29 @@
 
 #include <algorithm>
 
+#include "vins_core/so3.h"
+
 namespace vins::estimator {
+
+Pose carried(const Pose& T_wb, const Eigen::Matrix<double, 6, 1>& rate, double late) {
+  if (late == 0.0) return T_wb;
+  return {T_wb.rotation * so3::exp(Eigen::Vector3d(late * rate.tail<3>())),
+          T_wb.position + late * rate.head<3>()};
+}
+
+Eigen::Matrix<double, 6, 1> bodyRate(const WindowFrame& frame, const NavState& state, double late) {
+  Eigen::Matrix<double, 6, 1> rate;
+  rate << state.v_w,
+      frame.measured_rate + 0.5 * late * frame.angular_acceleration - state.gyroscope_bias;
+  return rate;
+}
+
+NavState SlidingWindow::atImage(const WindowFrame& frame) const {
+  NavState state = frame.state.value();
+  const double late = rig.td - frame.td;
+  state.T_wb = carried(state.T_wb, bodyRate(frame, state, late), late);
+  return state;
+}
 
 WindowValues SlidingWindow::values() const {
   WindowValues values;
@@ -22,7 +44,7 @@ std::size_t SlidingWindow::indexOf(FrameId id) const {
 CameraPoses SlidingWindow::cameras() const {
   CameraPoses cameras;
   for (const WindowFrame& frame : frames) {
-    cameras.emplace_hint(cameras.end(), frame.id, frame.state.value().T_wb * rig.T_bc);
+    cameras.emplace_hint(cameras.end(), frame.id, atImage(frame).T_wb * rig.T_bc);
   }
   return cameras;
 }

@@ -18,7 +18,7 @@ Keyframe keyframeOf(const SlidingWindow& window, std::size_t index, std::uint32_
   keyframe.sequence = sequence;
   keyframe.stamp = frame.stamp;
   keyframe.chosen_at = window.frames.back().stamp;
-  keyframe.T_wb = frame.state.value().T_wb;
+  keyframe.T_wb = window.atImage(frame).T_wb;
   keyframe.T_bc = window.rig.T_bc;
   keyframe.covariance = frame.covariance.topLeftCorner<6, 6>();
   const CameraPoses cameras = window.cameras();
@@ -33,8 +33,9 @@ Keyframe keyframeOf(const SlidingWindow& window, std::size_t index, std::uint32_
   return keyframe;
 }
 
-KeyframePoseUpdate poseUpdateOf(const WindowFrame& frame, std::uint32_t sequence) {
-  return {frame.keyframe_id, sequence, frame.stamp, frame.state.value().T_wb};
+KeyframePoseUpdate poseUpdateOf(const SlidingWindow& window, const WindowFrame& frame,
+                                std::uint32_t sequence) {
+  return {frame.keyframe_id, sequence, frame.stamp, window.atImage(frame).T_wb};
 }
 
 }  // namespace vins::estimator

@@ -40,7 +40,10 @@ WindowSystem::Point WindowSystem::moved(const VectorXd& steps) const {
     old.position += d.head<3>();
     old.rotation = (old.rotation * so3::exp(Eigen::Vector3d(d.tail<3>()))).normalized();
   }
-  if (refinesRig()) point.values.rig = plus(at_.values.rig, Vector7d(steps.tail<7>()));
+  if (refinesRig()) {
+    point.values.rig =
+        plus(at_.values.rig, expanded(rigVariables(), RigStep(steps.tail(rigSize()))));
+  }
   moveLandmarks(steps, &point.landmarks);
   return point;
 }
@@ -52,7 +55,11 @@ void WindowSystem::moveLandmarks(const VectorXd& steps,
     for (std::size_t a = landmarks_[k].begin; a < landmarks_[k].end; ++a) {
       g += W_[a].transpose() * steps.segment<6>(static_cast<Index>(6 * observations_[a].target));
     }
-    if (refinesRig()) g += eliminations_[k].W_rig.transpose() * steps.tail<7>();
+    if (refinesRig()) {
+      const Index shown = rigVariables().cameraSize();
+      g += eliminations_[k].W_rig.topRows(shown).transpose() *
+           steps.segment(stepCount() - rigSize(), shown);
+    }
     (*landmarks)[k] -= eliminations_[k].H_inverse * g;
   }
 }
@@ -66,12 +73,12 @@ Matrix15d WindowSystem::newestCovariance() const {
   return selection.transpose() * selection;
 }
 
-Matrix7d WindowSystem::rigCovariance() const {
-  if (!refinesRig()) return Matrix7d::Zero();
-  MatrixXd selection = MatrixXd::Zero(H_.rows(), 7);
-  selection.bottomRows<7>().setIdentity();
+RigMatrix WindowSystem::rigCovariance() const {
+  if (!refinesRig()) return RigMatrix::Zero();
+  MatrixXd selection = MatrixXd::Zero(H_.rows(), rigSize());
+  selection.bottomRows(rigSize()).setIdentity();
   llt_.matrixL().solveInPlace(selection);
-  return selection.transpose() * selection;
+  return expanded(rigVariables(), MatrixXd(selection.transpose() * selection));
 }
 
 Eigen::Matrix<double, 6, 6> WindowSystem::relativeCovariance(std::size_t a, std::size_t b) const {

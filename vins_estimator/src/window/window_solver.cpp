@@ -26,7 +26,12 @@ std::vector<Pose> posesOf(const WindowValues& values, bool refines_rig) {
   return poses;
 }
 
-/// The whole window as one residual of the poses (and td, where the rig is refined), whose square
+/// The rig's variables but T_bc: what Ceres moves in a block of its own.
+RigStep withoutExtrinsic(const RigVariables& variables, const RigCalibration& rig) {
+  return selected(variables, minus(rig, RigCalibration())).tail(variables.size() - 6);
+}
+
+/// The whole window as one residual of the poses (and the rig, where it is refined), whose square
 /// is the cost and whose Jacobian is the square root of their information. Ceres asks for a trial
 /// step's cost first, and for Jacobians at the same poses if it takes the step: that is when the
 /// system is linearized anew.
@@ -36,7 +41,10 @@ class ReducedWindowFactor : public ceres::CostFunction {
       : system_(*system), at_(system->present()), trial_(at_), best_(at_) {
     const std::size_t poses = posesOf(at_.values, system->refinesRig()).size();
     mutable_parameter_block_sizes()->assign(poses, 7);
-    if (system->refinesRig()) mutable_parameter_block_sizes()->push_back(1);
+    if (system->refinesRig()) {
+      mutable_parameter_block_sizes()->push_back(system->rigVariables().size() - 6);
+    }
+    poses_columns_ = static_cast<Index>(6 * poses);
     set_num_residuals(static_cast<int>(system->stepCount()) + 1);
   }
 
@@ -62,7 +70,9 @@ class ReducedWindowFactor : public ceres::CostFunction {
       const PoseBlock from = toPoseBlock(poses[i]);
       manifold_.Minus(parameters[i], from.data(), steps.data() + 6 * i);
     }
-    if (system_.refinesRig()) steps.tail<1>()[0] = *parameters[poses.size()] - at_.values.rig.td;
+    if (!system_.refinesRig()) return steps;
+    const RigStep at = withoutExtrinsic(system_.rigVariables(), at_.values.rig);
+    steps.tail(at.size()) = Eigen::Map<const VectorXd>(parameters[poses.size()], at.size()) - at;
     return steps;
   }
 
@@ -94,7 +104,8 @@ class ReducedWindowFactor : public ceres::CostFunction {
     const std::vector<int>& sizes = parameter_block_sizes();
     Index column = 0;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
-      const Index count = sizes[i] == 7 ? 6 : 1;  // of the tangent space
+      // Of the tangent space: poses stand first.
+      const Index count = column < poses_columns_ ? 6 : sizes[i];
       if (jacobians[i] != nullptr) {
         using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
         // A matrix of one column has one order only, which Eigen wants to be told.
@@ -109,6 +120,7 @@ class ReducedWindowFactor : public ceres::CostFunction {
 
   WindowSystem& system_;
   PoseManifold manifold_;
+  Index poses_columns_ = 0;
   // Where Ceres stands and what it tries: it evaluates through a const interface.
   mutable WindowSystem::Point at_;
   mutable WindowSystem::Point trial_;
@@ -145,18 +157,19 @@ void refreshIntegrations(SlidingWindow* window) {
   for (std::size_t i = 1; i < window->frames.size(); ++i) {
     const NavState& from = window->frames[i - 1].state.value();
     Preintegration& imu = window->frames[i].imu;
-    if (imu.needsReintegration(from.accelerometer_bias, from.gyroscope_bias)) {
-      imu.reintegrate(from.accelerometer_bias, from.gyroscope_bias);
+    const ImuIntrinsics& intrinsics = window->rig.imu;
+    if (imu.needsReintegration(from.accelerometer_bias, from.gyroscope_bias, intrinsics)) {
+      imu.reintegrate(from.accelerometer_bias, from.gyroscope_bias, intrinsics);
     }
   }
 }
 
-ceres::Solver::Summary minimize(const WindowSolverOptions& options, bool refines_rig,
+ceres::Solver::Summary minimize(const WindowSolverOptions& options, const SlidingWindow& window,
                                 ReducedWindowFactor* factor) {
   const WindowValues& start = factor->solution().values;
   std::vector<PoseBlock> poses;
-  for (const Pose& pose : posesOf(start, refines_rig)) poses.push_back(toPoseBlock(pose));
-  double td = start.rig.td;
+  for (const Pose& pose : posesOf(start, window.refines_rig)) poses.push_back(toPoseBlock(pose));
+  RigStep rig = withoutExtrinsic(window.rig_variables, start.rig);
   PoseManifold manifold;
   ceres::Problem problem(problemOptions());
   std::vector<double*> blocks;
@@ -164,9 +177,9 @@ ceres::Solver::Summary minimize(const WindowSolverOptions& options, bool refines
     problem.AddParameterBlock(pose.data(), 7, &manifold);
     blocks.push_back(pose.data());
   }
-  if (refines_rig) {
-    problem.AddParameterBlock(&td, 1);
-    blocks.push_back(&td);
+  if (window.refines_rig) {
+    problem.AddParameterBlock(rig.data(), static_cast<int>(rig.size()));
+    blocks.push_back(rig.data());
   }
   problem.AddResidualBlock(factor, nullptr, blocks);
   ceres::Solver::Summary summary;
@@ -179,7 +192,7 @@ std::optional<LoopEstimate> loopEstimate(const SlidingWindow& window, const Wind
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     if (window.frames[i].keyframe_id != window.loop->query_id) continue;
     LoopEstimate loop;
-    loop.T_old_query = window.loop->T_wb.inverse() * window.frames[i].state.value().T_wb;
+    loop.T_old_query = window.loop->T_wb.inverse() * window.atImage(window.frames[i]).T_wb;
     loop.covariance = system.relativeCovariance(window.frames.size(), i);
     return loop;
   }
@@ -192,7 +205,7 @@ SolveSummary solveWindow(const WindowSolverOptions& options, SlidingWindow* wind
   refreshIntegrations(window);
   WindowSystem system(*window, options.huber);
   ReducedWindowFactor factor(&system);
-  const ceres::Solver::Summary ceres_summary = minimize(options, window->refines_rig, &factor);
+  const ceres::Solver::Summary ceres_summary = minimize(options, *window, &factor);
   SolveSummary summary;
   summary.usable = ceres_summary.IsSolutionUsable();
   summary.iterations = static_cast<int>(ceres_summary.iterations.size()) - 1;

@@ -130,7 +130,8 @@ double WindowSystem::cost(const Point& point) const {
   for (std::size_t i = 1; i < frameCount(); ++i) {
     const Preintegration& imu = window_.frames[i].imu;
     if (!imu.isWeightable()) return std::numeric_limits<double>::infinity();
-    const Vector15d r = imuResidual(imu, window_.g_w, states[i - 1], states[i]);
+    const Vector15d r =
+        imuResidual(imu, window_.g_w, states[i - 1], states[i], point.values.rig.imu);
     cost += 0.5 * (imu.sqrtInformation() * r).squaredNorm();
   }
   for (std::size_t i = 0; i < frameCount(); ++i) {
@@ -181,7 +182,11 @@ void WindowSystem::addLandmark(std::size_t index) {
     scaleByLoss(huber_, &o);
     H_ll += o.J_landmark.transpose() * o.J_landmark;
     elimination.g += o.J_landmark.transpose() * o.r;
-    if (refinesRig()) addRig(o, landmark.host, &elimination);
+    if (refinesRig() && rigVariables().camera) {
+      addRig<kCameraRigSize>(o, landmark.host, &elimination);
+    } else if (refinesRig()) {
+      addRig<kReadout>(o, landmark.host, &elimination);
+    }
     if (k == landmark.begin) continue;
     W_host += o.J_host.transpose() * o.J_landmark;
     W_[k] = o.J_target.transpose() * o.J_landmark;
@@ -204,14 +209,16 @@ void WindowSystem::addObservation(const LinearizedObservation& o, std::size_t ho
   g_.segment<6>(target) += o.J_target.transpose() * o.r;
 }
 
+template <int columns>
 void WindowSystem::addRig(const LinearizedObservation& o, std::size_t host,
                           Elimination* elimination) {
   const Index rig = rigColumn();
-  H_.block<7, 7>(rig, rig) += o.J_rig.transpose() * o.J_rig;
-  H_.block<7, 6>(rig, poseColumn(host)) += o.J_rig.transpose() * o.J_host;
-  H_.block<7, 6>(rig, poseColumn(o.target)) += o.J_rig.transpose() * o.J_target;
-  g_.segment<7>(rig) += o.J_rig.transpose() * o.r;
-  elimination->W_rig += o.J_rig.transpose() * o.J_landmark;
+  const auto J_rig = o.J_rig.leftCols<columns>();
+  H_.block<columns, columns>(rig, rig) += J_rig.transpose() * J_rig;
+  H_.block<columns, 6>(rig, poseColumn(host)) += J_rig.transpose() * o.J_host;
+  H_.block<columns, 6>(rig, poseColumn(o.target)) += J_rig.transpose() * o.J_target;
+  g_.segment<columns>(rig) += J_rig.transpose() * o.r;
+  elimination->W_rig.topRows<columns>() += J_rig.transpose() * o.J_landmark;
 }
 
 void WindowSystem::eliminate(std::size_t index) {
@@ -225,16 +232,22 @@ void WindowSystem::eliminate(std::size_t index) {
       H_.block<6, 6>(row, poseColumn(observations_[b].target)) -= left * W_[b].transpose();
     }
   }
-  if (refinesRig()) eliminateFromRig(landmark, elimination);
+  if (refinesRig() && rigVariables().camera) {
+    eliminateFromRig<kCameraRigSize>(landmark, elimination);
+  } else if (refinesRig()) {
+    eliminateFromRig<kReadout>(landmark, elimination);
+  }
 }
 
+template <int columns>
 void WindowSystem::eliminateFromRig(const FlatLandmark& landmark, const Elimination& elimination) {
   const Index rig = rigColumn();
-  const Matrix73d left = elimination.W_rig * elimination.H_inverse;
-  g_.segment<7>(rig) -= left * elimination.g;
-  H_.block<7, 7>(rig, rig) -= left * elimination.W_rig.transpose();
+  const auto W_rig = elimination.W_rig.topRows<columns>();
+  const Eigen::Matrix<double, columns, 3> left = W_rig * elimination.H_inverse;
+  g_.segment<columns>(rig) -= left * elimination.g;
+  H_.block<columns, columns>(rig, rig) -= left * W_rig.transpose();
   for (std::size_t b = landmark.begin; b < landmark.end; ++b) {
-    H_.block<7, 6>(rig, poseColumn(observations_[b].target)) -= left * W_[b].transpose();
+    H_.block<columns, 6>(rig, poseColumn(observations_[b].target)) -= left * W_[b].transpose();
   }
 }
 
@@ -244,14 +257,15 @@ void WindowSystem::addImu(std::size_t frame) {
   const Preintegration& imu = window_.frames[frame].imu;
   const NavState& value_i = at_.values.states[frame - 1];
   const NavState& value_j = at_.values.states[frame];
+  const ImuIntrinsics& intrinsics = at_.values.rig.imu;
   const ImuJacobians J = imuJacobians(imu, window_.g_w, from.linearizationPoint(value_i),
-                                      to.linearizationPoint(value_j));
+                                      to.linearizationPoint(value_j), intrinsics);
   // Motions i and j, then poses i and j: as the system has them.
   Eigen::Matrix<double, 15, 30> whole;
   whole << J.J_motion_i, J.J_motion_j, J.J_pose_i, J.J_pose_j;
   const Matrix15d& weight = imu.sqrtInformation();
   whole = (weight * whole).eval();
-  const Vector15d r = weight * imuResidual(imu, window_.g_w, value_i, value_j);
+  const Vector15d r = weight * imuResidual(imu, window_.g_w, value_i, value_j, intrinsics);
   const Index motion = motionColumn(frame - 1);
   const Index pose = poseColumn(frame - 1);
   const auto J_motion = whole.leftCols<18>();
@@ -261,6 +275,20 @@ void WindowSystem::addImu(std::size_t frame) {
   H_.block<12, 12>(pose, pose) += J_pose.transpose() * J_pose;
   g_.segment<18>(motion) += J_motion.transpose() * r;
   g_.segment<12>(pose) += J_pose.transpose() * r;
+  if (refinesRig() && rigVariables().imu) {
+    addImuIntrinsics(frame, whole, weight * J.J_intrinsics, r);
+  }
+}
+
+/// `J_states`: weighted, by motions and poses of the frame before and of the frame.
+void WindowSystem::addImuIntrinsics(std::size_t frame,
+                                    const Eigen::Matrix<double, 15, 30>& J_states,
+                                    const Matrix15d& J, const Vector15d& r) {
+  const Index column = rigColumn() + rigVariables().cameraSize();
+  H_.block<15, 15>(column, column) += J.transpose() * J;
+  H_.block<15, 18>(column, motionColumn(frame - 1)) += J.transpose() * J_states.leftCols<18>();
+  H_.block<15, 12>(column, poseColumn(frame - 1)) += J.transpose() * J_states.rightCols<12>();
+  g_.segment<15>(column) += J.transpose() * r;
 }
 
 void WindowSystem::addStillness(std::size_t frame) {

@@ -15,6 +15,9 @@ using Matrix15x9d = Eigen::Matrix<double, 15, 9>;
 /// 16): alpha, rotation, beta, accelerometer bias, gyroscope bias, not weighted.
 Vector15d imuResidual(const Preintegration& imu, const Eigen::Vector3d& g_w, const NavState& i,
                       const NavState& j);
+/// The same with these errors of the IMU's axes in place of those integrated with.
+Vector15d imuResidual(const Preintegration& imu, const Eigen::Vector3d& g_w, const NavState& i,
+                      const NavState& j, const ImuIntrinsics& intrinsics);
 
 /// Derivatives of imuResidual() by the error states of pose (position, rotation) and motion
 /// (velocity, accelerometer bias, gyroscope bias) at i and at j.
@@ -23,9 +26,12 @@ struct ImuJacobians {
   Matrix15x9d J_motion_i;
   Matrix15x6d J_pose_j;
   Matrix15x9d J_motion_j;
+  Matrix15d J_intrinsics;  ///< by the errors of the IMU's axes
 };
 ImuJacobians imuJacobians(const Preintegration& imu, const Eigen::Vector3d& g_w, const NavState& i,
                           const NavState& j);
+ImuJacobians imuJacobians(const Preintegration& imu, const Eigen::Vector3d& g_w, const NavState& i,
+                          const NavState& j, const ImuIntrinsics& intrinsics);
 
 /// Covariance, by ErrorState, of the state that the IMU predicts from state i, whose errors have
 /// `covariance`.
@@ -39,7 +45,11 @@ class ImuFactor : public ceres::SizedCostFunction<15, 7, 9, 7, 9> {
  public:
   ImuFactor(const Preintegration& imu, const Eigen::Vector3d& g_w, const WindowState& i,
             const WindowState& j)
-      : imu_(imu), g_w_(g_w), i_(i), j_(j) {}
+      : ImuFactor(imu, g_w, i, j, imu.intrinsics()) {}
+  /// With these errors of the IMU's axes.
+  ImuFactor(const Preintegration& imu, const Eigen::Vector3d& g_w, const WindowState& i,
+            const WindowState& j, const ImuIntrinsics& intrinsics)
+      : imu_(imu), g_w_(g_w), i_(i), j_(j), intrinsics_(intrinsics) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
@@ -49,6 +59,7 @@ class ImuFactor : public ceres::SizedCostFunction<15, 7, 9, 7, 9> {
   Eigen::Vector3d g_w_;
   const WindowState& i_;
   const WindowState& j_;
+  ImuIntrinsics intrinsics_;
 };
 
 }  // namespace vins::estimator

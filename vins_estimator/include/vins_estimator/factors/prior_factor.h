@@ -12,7 +12,7 @@ namespace vins::estimator {
 
 /// What is known of a group of states in square-root form: residual = A d + b, d being the states'
 /// differences from the values `at`, stacked: six numbers for a pose (position, rotation), nine for
-/// a motion (velocity, biases), seven for the rig (T_bc, td).
+/// a motion (velocity, biases), those of its variables for the rig.
 struct Prior {
   enum class Kind { kPose, kMotion, kRig };
   /// One part of the stacked difference.
@@ -21,6 +21,7 @@ struct Prior {
     std::size_t frame = 0;  ///< index of the state in the window; 0 for the rig
     NavState at;            ///< where the difference of a pose or motion is zero
     RigCalibration rig_at;  ///< the same for the rig
+    RigVariables rig_variables;
     int size() const;
   };
   std::vector<Part> parts;

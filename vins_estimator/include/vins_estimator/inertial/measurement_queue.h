@@ -38,6 +38,8 @@ struct FrameMeasurements {
   /// After `end`, while the camera read its rows: from exactly `end` to the first at or after
   /// end + readout. Empty without a readout.
   std::vector<ImuSample> readout;
+  double undone_readout =
+      0.0;                   ///< with which the features were brought to the first row's time [s]
   Stamp begin = 0;           ///< end of the previous frame's interval [ns, the IMU's clock]
   Stamp end = 0;             ///< this frame's stamp + td [ns, the IMU's clock]
   double longest_gap = 0.0;  ///< between neighbouring samples as they came, on the way [s]
@@ -45,6 +47,9 @@ struct FrameMeasurements {
   bool is_first = false;     ///< no interval from a frame before: the start, or restarted
   bool restarted = false;    ///< stamps have jumped back: forget what was before
 };
+
+/// Angular acceleration over the last 20 ms of the samples, the gyroscope's axes [rad/s^2].
+Eigen::Vector3d angularAcceleration(const std::vector<ImuSample>& samples);
 
 /// Kept by all that look back over several frames, without a copy of the observations.
 using SharedMeasurements = std::shared_ptr<const FrameMeasurements>;

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "vins_core/imu.h"
+#include "vins_estimator/inertial/imu_intrinsics.h"
 #include "vins_estimator/inertial/nav_state.h"
 
 namespace vins::estimator {
@@ -17,9 +18,11 @@ namespace vins::estimator {
 /// al., "On-manifold preintegration for real-time visual-inertial odometry", T-RO 2017.
 class Preintegration {
  public:
-  /// Integrates with these biases [m/s^2], [rad/s] until reintegrate() is given others.
+  /// Integrates with these biases [m/s^2], [rad/s] and errors of the axes until reintegrate() is
+  /// given others.
   Preintegration(const ImuNoise& noise, const Eigen::Vector3d& accelerometer_bias,
-                 const Eigen::Vector3d& gyroscope_bias);
+                 const Eigen::Vector3d& gyroscope_bias,
+                 const ImuIntrinsics& intrinsics = ImuIntrinsics::Zero());
 
   /// Carries on over neighbouring samples, which have rising stamps; the first must be the last one
   /// of the samples before (same stamp), or the very first. Where the samples show vibration, the
@@ -37,11 +40,16 @@ class Preintegration {
   /// Integrates all samples anew, with other biases.
   void reintegrate(const Eigen::Vector3d& accelerometer_bias,
                    const Eigen::Vector3d& gyroscope_bias);
+  /// With other errors of the axes, too.
+  void reintegrate(const Eigen::Vector3d& accelerometer_bias, const Eigen::Vector3d& gyroscope_bias,
+                   const ImuIntrinsics& intrinsics);
 
-  /// The first-order correction for these biases is no longer good: their distance from the biases
-  /// integrated with, times the interval, would bend it by more than a small part of its noise.
+  /// The first-order correction for these biases and errors of the axes is no longer good: their
+  /// distance from those integrated with, times the interval or what was measured in it, would bend
+  /// it by more than a small part of its noise.
   bool needsReintegration(const Eigen::Vector3d& accelerometer_bias,
-                          const Eigen::Vector3d& gyroscope_bias) const;
+                          const Eigen::Vector3d& gyroscope_bias,
+                          const ImuIntrinsics& intrinsics) const;
 
   double duration() const { return duration_; }  ///< [s]
   bool empty() const { return pieces_.empty(); }
@@ -50,11 +58,14 @@ class Preintegration {
   const Eigen::Vector3d& beta() const { return beta_; }       ///< [m/s]
   const Eigen::Vector3d& accelerometerBias() const { return accelerometer_bias_; }
   const Eigen::Vector3d& gyroscopeBias() const { return gyroscope_bias_; }
+  const ImuIntrinsics& intrinsics() const { return intrinsics_; }
   const ImuNoise& noise() const { return noise_; }
 
   /// d(alpha, theta, beta, ba, bg) at j by the same at i: 15x15. Its blocks right of kVelocity are
   /// the derivatives by the biases.
   const Matrix15d& jacobian() const { return jacobian_; }
+  /// d(alpha, theta, beta) at j by the errors of the axes.
+  const Eigen::Matrix<double, 9, 15>& intrinsicsJacobian() const { return intrinsics_jacobian_; }
   /// Covariance of the increments' errors (alpha, theta, beta, ba, bg).
   const Matrix15d& covariance() const { return covariance_; }
   /// Whether the covariance can be inverted. False only where it is not finite.
@@ -69,9 +80,12 @@ class Preintegration {
     Eigen::Quaterniond gamma;
     Eigen::Vector3d beta;
   };
-  /// Corrected to first order for these biases.
+  /// Corrected to first order for these biases and, where they are given, errors of the axes.
   Increments corrected(const Eigen::Vector3d& accelerometer_bias,
                        const Eigen::Vector3d& gyroscope_bias) const;
+  Increments corrected(const Eigen::Vector3d& accelerometer_bias,
+                       const Eigen::Vector3d& gyroscope_bias,
+                       const ImuIntrinsics& intrinsics) const;
 
   /// The state at j of a body that stands at `state` at i. `g_w`: gravity, (0, 0, -g).
   NavState predict(const NavState& state, const Eigen::Vector3d& g_w) const;
@@ -98,6 +112,7 @@ class Preintegration {
   ImuNoise noise_;
   Eigen::Vector3d accelerometer_bias_;
   Eigen::Vector3d gyroscope_bias_;
+  ImuIntrinsics intrinsics_;
   std::vector<Piece> pieces_;
 
   double duration_ = 0.0;
@@ -105,6 +120,7 @@ class Preintegration {
   Eigen::Quaterniond gamma_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d beta_ = Eigen::Vector3d::Zero();
   Matrix15d jacobian_ = Matrix15d::Identity();
+  Eigen::Matrix<double, 9, 15> intrinsics_jacobian_ = Eigen::Matrix<double, 9, 15>::Zero();
   Matrix15d covariance_ = Matrix15d::Zero();
   mutable Matrix15d sqrt_information_;
   mutable bool sqrt_information_known_ = false;

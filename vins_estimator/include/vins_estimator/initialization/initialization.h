@@ -14,6 +14,8 @@ struct InitialFrame {
   NavState state;
   Preintegration imu;  ///< from the frame before; empty for the first
   Eigen::Vector3d measured_rate = Eigen::Vector3d::Zero();  ///< of the gyroscope, then [rad/s]
+  Eigen::Vector3d angular_acceleration = Eigen::Vector3d::Zero();  ///< then [rad/s^2]
+  double undone_readout = 0.0;  ///< of the rolling shutter, before [s]
 };
 
 /// The states with which the estimator starts.

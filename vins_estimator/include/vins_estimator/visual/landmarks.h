@@ -45,8 +45,10 @@ using CameraPoses = std::map<FrameId, Pose>;
 /// The tracks of the window's frames. Only the first camera's features count.
 class Landmarks {
  public:
-  /// `pixel_noise`: deviation of a corner, per axis [px].
-  explicit Landmarks(double pixel_noise) : pixel_noise_(pixel_noise) {}
+  /// `pixel_noise`: deviation of a corner, per axis [px]; `image_height` [px], 0: not known, all
+  /// rows count as the first.
+  explicit Landmarks(double pixel_noise, int image_height = 0)
+      : pixel_noise_(pixel_noise), image_height_(image_height) {}
 
   /// Appends the features of a frame newer than all before it.
   void addFrame(FrameId frame, const FeatureFrame& features);
@@ -67,6 +69,7 @@ class Landmarks {
 
  private:
   double pixel_noise_;
+  int image_height_;
   std::map<std::int64_t, Landmark> tracks_;
 };
 

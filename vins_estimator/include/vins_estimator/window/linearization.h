@@ -20,7 +20,8 @@ struct LinearizedObservation {
   Eigen::Matrix<double, 2, 6> J_host;
   Eigen::Matrix<double, 2, 6> J_target;
   Eigen::Matrix<double, 2, 3> J_landmark;
-  Eigen::Matrix<double, 2, 7> J_rig;  ///< zero where the rig is not refined
+  /// By the rig's errors that observations show; zero where they are not refined.
+  Eigen::Matrix<double, 2, kCameraRigSize> J_rig;
   Eigen::Vector2d r;
 };
 
@@ -38,6 +39,7 @@ struct WindowGeometry {
   /// Jacobians by the rig are wanted: not of views at rest, where nothing shows it but the noise of
   /// the poses would seem to.
   std::vector<bool> shows_rig;
+  bool shows_camera = false;  ///< the same by read-out and intrinsics
 };
 WindowGeometry geometryOf(const SlidingWindow& window, const WindowValues& values);
 

@@ -29,9 +29,11 @@ struct WindowFrame {
   bool stands_still = false;      ///< images and IMU say so
   bool has_rested = false;        ///< since the frame before it in the window
   double td = 0.0;                ///< with which it was timed [s]
+  double readout = 0.0;           ///< rolling shutter undone beforehand [s]
   double interval = 0.0;          ///< since the image before it, 0: not known [s]
   Eigen::Vector3d measured_rate = Eigen::Vector3d::Zero();  ///< of the gyroscope, then [rad/s]
-  Matrix15d covariance = Matrix15d::Zero();                 ///< of its state when it was the newest
+  Eigen::Vector3d angular_acceleration = Eigen::Vector3d::Zero();  ///< then [rad/s^2], body frame
+  Matrix15d covariance = Matrix15d::Zero();  ///< of its state when it was the newest
 };
 
 /// A keyframe of long ago that sees what the window sees: a loop. Where it stands in the odometry's
@@ -61,8 +63,9 @@ struct SlidingWindow {
   Landmarks landmarks{1.0};
   Prior prior;  ///< its parts name frames by their index here
   RigCalibration rig;
-  bool refines_rig = false;  ///< the rig is one of the unknowns; its prior says how far
-  Matrix7d rig_covariance = Matrix7d::Identity();  ///< of its errors, as last known
+  bool refines_rig = false;    ///< the rig is one of the unknowns; its prior says how far
+  RigVariables rig_variables;  ///< which of its errors, where it is
+  RigMatrix rig_covariance = RigMatrix::Identity();  ///< of its errors, as last known
   std::optional<OldKeyframe> loop;
   Eigen::Vector3d g_w = Eigen::Vector3d(0.0, 0.0, -9.81);
   ZeroMotionNoise rest;     ///< of frames that stand still
@@ -70,11 +73,20 @@ struct SlidingWindow {
 
   /// The present ones.
   WindowValues values() const;
+  /// State of the body when a frame's image was taken, as the present td has it: the frame's own
+  /// state is that of the time that its td said.
+  NavState atImage(const WindowFrame& frame) const;
   /// Index of a frame; it must be there.
   std::size_t indexOf(FrameId id) const;
   /// T_wc of every frame.
   CameraPoses cameras() const;
 };
+
+/// A pose `late` seconds later, at constant rates: position [m/s], rotation [rad/s, body frame].
+Pose carried(const Pose& T_wb, const Eigen::Matrix<double, 6, 1>& rate, double late);
+
+/// Mean rates of a frame's body in this state, over `late` seconds from the frame's time on.
+Eigen::Matrix<double, 6, 1> bodyRate(const WindowFrame& frame, const NavState& state, double late);
 
 /// Takes a frame out that the prior does not touch: its visual measurements go, its IMU interval
 /// becomes part of the next frame's.

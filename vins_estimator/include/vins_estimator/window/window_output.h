@@ -24,6 +24,7 @@ std::vector<LandmarkPoint> landmarkPoints(const SlidingWindow& window);
 Keyframe keyframeOf(const SlidingWindow& window, std::size_t index, std::uint32_t sequence);
 
 /// The last word on a keyframe that is about to leave.
-KeyframePoseUpdate poseUpdateOf(const WindowFrame& frame, std::uint32_t sequence);
+KeyframePoseUpdate poseUpdateOf(const SlidingWindow& window, const WindowFrame& frame,
+                                std::uint32_t sequence);
 
 }  // namespace vins::estimator

@@ -30,7 +30,7 @@ struct SolveSummary {
   double cost_initial = 0.0;
   double cost_final = 0.0;
   Matrix15d newest_covariance = Matrix15d::Zero();  ///< of the newest state, at the solution
-  Matrix7d rig_covariance = Matrix7d::Zero();       ///< of the rig's errors; zero: not refined
+  RigMatrix rig_covariance = RigMatrix::Zero();     ///< of the rig's errors; zero: no variable
   std::optional<LoopEstimate> loop;                 ///< of the window's loop
 };
 

@@ -14,7 +14,7 @@ namespace vins::estimator {
 /// The window's least-squares problem with all but the poses (and the rig's calibration) eliminated
 /// by hand: landmarks by the Schur complement of their 3x3 blocks, velocities and biases by a
 /// Cholesky factorization in which they stand first. What is left ("steps") are six numbers for
-/// each view - the frames, then the old keyframe if there is one - and seven for the rig where it
+/// each view - the frames, then the old keyframe if there is one - and the rig's variables where it
 /// is refined.
 ///
 /// The window must outlive it and must not change meanwhile.
@@ -36,6 +36,7 @@ class WindowSystem {
   std::size_t frameCount() const { return window_.frames.size(); }
   std::size_t viewCount() const { return frameCount() + (window_.loop ? 1 : 0); }
   bool refinesRig() const { return window_.refines_rig; }
+  const RigVariables& rigVariables() const { return window_.rig_variables; }
   Eigen::Index stepCount() const;
   std::size_t landmarkCount() const { return landmarks_.size(); }
   std::size_t observationCount() const { return observations_.size(); }
@@ -56,8 +57,8 @@ class WindowSystem {
   Point moved(const Eigen::VectorXd& steps) const;
   /// Covariance of the newest state.
   Matrix15d newestCovariance() const;
-  /// Covariance of the rig's errors; zero where it is not refined.
-  Matrix7d rigCovariance() const;
+  /// Covariance of the rig's errors; zero where they are no variables.
+  RigMatrix rigCovariance() const;
   /// Covariance of the pose of view `b` in the body frame of view `a`: position, rotation (right).
   Eigen::Matrix<double, 6, 6> relativeCovariance(std::size_t a, std::size_t b) const;
   /// Information of all states, landmarks eliminated: 15 rows for each frame, by ErrorState.
@@ -65,7 +66,7 @@ class WindowSystem {
 
  private:
   using Matrix63d = Eigen::Matrix<double, 6, 3>;
-  using Matrix73d = Eigen::Matrix<double, 7, 3>;
+  using MatrixRig3d = Eigen::Matrix<double, kCameraRigSize, 3>;
   struct FlatObservation {
     const BearingMeasurement* measured;
     std::size_t target;
@@ -80,22 +81,27 @@ class WindowSystem {
   struct Elimination {
     Eigen::Matrix3d H_inverse;
     Eigen::Vector3d g;
-    Matrix73d W_rig;  ///< set where the rig is refined
+    MatrixRig3d W_rig;  ///< of those that observations show; set where the rig is refined
   };
 
   void collectObservations(const std::map<FrameId, std::size_t>& index, const Landmark& landmark);
   Eigen::Index poseColumn(std::size_t view) const;
   Eigen::Index rigColumn() const { return poseColumn(viewCount()); }
-  Eigen::Index size() const { return rigColumn() + (refinesRig() ? 7 : 0); }
+  Eigen::Index rigSize() const { return refinesRig() ? rigVariables().size() : 0; }
+  Eigen::Index size() const { return rigColumn() + rigSize(); }
   static Eigen::Index motionColumn(std::size_t frame);
   Eigen::Index column(const Prior::Part& part) const;
   void preparePrior();
   void addLandmark(std::size_t landmark);
   void addObservation(const LinearizedObservation& o, std::size_t host);
+  template <int columns>
   void addRig(const LinearizedObservation& o, std::size_t host, Elimination* elimination);
   void eliminate(std::size_t landmark);
+  template <int columns>
   void eliminateFromRig(const FlatLandmark& landmark, const Elimination& elimination);
   void addImu(std::size_t frame);
+  void addImuIntrinsics(std::size_t frame, const Eigen::Matrix<double, 15, 30>& J_states,
+                        const Matrix15d& J, const Vector15d& r);
   void addStillness(std::size_t frame);
   void addRest(std::size_t frame);
   void addOldTilt();
