@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vins_core/trajectory_file.h"
+#include "vins_pipeline/rig_summary.h"
 
 namespace vins::pipeline {
 namespace {
@@ -49,6 +50,8 @@ void RunResults::add(const estimator::EstimatorResult& estimate) {
   status_ = estimate.status;
   if (!estimate.odometry) return;
   td_[estimate.odometry->stamp] = estimate.rig.td;
+  rig_ = estimate.rig;
+  rig_covariance_ = estimate.rig_covariance;
   add(*estimate.odometry);
 }
 
@@ -93,6 +96,8 @@ std::optional<double> RunResults::initialisedAfter() const {
   if (!first_odometry_ || !first_image_) return std::nullopt;
   return toSeconds(*first_odometry_ - *first_image_);
 }
+
+std::string RunResults::rig() const { return describeRig(rig_, rig_covariance_); }
 
 std::string RunResults::state() const {
   return std::to_string(features_) + " features, " + toString(status_);

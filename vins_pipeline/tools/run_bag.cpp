@@ -279,6 +279,7 @@ void printSummary(const Run& run, const fs::path& folder) {
             << " images, path " << results.pathLength() << " m, " << results.resets() << " resets, "
             << (results.isTracking() ? "tracking" : "not tracking")
             << (run.interrupted ? " when interrupted\n" : " at the end\n");
+  if (!results.rig().empty()) std::cout << "rig, as estimated\n" << results.rig();
   if (run.graph) printLoops(*run.graph);
   std::cout << run.maps;
   printWarnings(results);

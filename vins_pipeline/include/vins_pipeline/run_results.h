@@ -46,6 +46,9 @@ class RunResults {
   /// The first odometry, in seconds since the first image; nothing while there is none.
   std::optional<double> initialisedAfter() const;
 
+  /// The rig as estimated last, in words; empty where nothing of it was estimated.
+  std::string rig() const;
+
   /// The newest frame has an odometry.
   bool isTracking() const { return status_ == estimator::EstimatorStatus::kTracking; }
 
@@ -77,6 +80,8 @@ class RunResults {
   std::optional<Stamp> first_odometry_;
   std::optional<Stamp> last_truth_;
   std::optional<estimator::Odometry> last_odometry_;
+  estimator::RigCalibration rig_;  ///< the last
+  estimator::RigMatrix rig_covariance_ = estimator::RigMatrix::Zero();
   estimator::EstimatorStatus status_ = estimator::EstimatorStatus::kInitializing;
   double path_length_ = 0.0;
   unsigned resets_ = 0;
