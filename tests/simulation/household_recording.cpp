@@ -114,6 +114,7 @@ OwnRig drawRig(Random* random, bool large) {
   rig.handed_out.noise = times(sheet, believed_share);
   rig.handed_out.estimate_extrinsic = true;
   rig.handed_out.estimate_time_offset = true;
+  rig.handed_out.self_calibration = true;
   return rig;
 }
 

@@ -202,7 +202,7 @@ std::optional<double> scaleError(const Positions& estimated, const Positions& tr
 namespace {
 
 void judgeRig(const OdometryRun& run, OdometryFigures* figures) {
-  const estimator::Vector7d error = minus(run.true_rig, run.rig);
+  const estimator::RigVector error = minus(run.true_rig, run.rig);
   figures->extrinsic_translation_error = error.head<3>().norm();
   figures->extrinsic_rotation_error = error.segment<3>(3).norm();
   figures->td_error = std::abs(error(6));

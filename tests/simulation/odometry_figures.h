@@ -51,8 +51,8 @@ struct OdometryRun {
   std::vector<Event> events;
   estimator::RigCalibration rig;       ///< as last estimated
   estimator::RigCalibration true_rig;  ///< as simulated
-  estimator::Matrix7d rig_covariance =
-      estimator::Matrix7d::Zero();  ///< zero where the rig was not estimated
+  estimator::RigMatrix rig_covariance =
+      estimator::RigMatrix::Zero();  ///< zero where the rig was not estimated
 };
 
 /// Normalised estimation error squared (NEES), averaged over a run, per degree of freedom: 1 is

@@ -88,6 +88,9 @@ std::string timingText(const Rig& rig) {
        << "estimate_td: " << rig.estimate_time_offset << "\ntd: " << exactNumber(rig.time_offset)
        << "\nrolling_shutter: " << (rig.rolling_shutter_readout > 0.0)
        << "\nrolling_shutter_tr: " << exactNumber(rig.rolling_shutter_readout) << "\n";
+  if (rig.self_calibration) {
+    text << "estimate_readout: 1\nestimate_intrinsics: 1\nestimate_imu_intrinsics: 1\n";
+  }
   return text.str();
 }
 

@@ -20,6 +20,7 @@ struct Rig {
   double rolling_shutter_readout = 0.0;  ///< first row to the one below the last [s]
   bool estimate_extrinsic = false;       ///< the extrinsic is only a first guess
   bool estimate_time_offset = false;     ///< and so is td
+  bool self_calibration = false;         ///< and so are read-out, intrinsics and the IMU's axes
 };
 
 /// The rig as a calibration with errors would hand it out. Each number gets a normal error with a

@@ -32,6 +32,7 @@ TEST(HouseholdRecording, HandsOutWhatAUserHas) {
     const Rig &truth = options.own_rig->truth, &user = options.own_rig->handed_out;
     EXPECT_EQ(user.time_offset, 0.0);
     EXPECT_TRUE(user.estimate_time_offset);
+    EXPECT_TRUE(user.self_calibration);
     EXPECT_TRUE(user.estimate_extrinsic);
     EXPECT_EQ(user.rolling_shutter_readout, 0.0) << "whose read-out is unknown";
     const double focal_error =

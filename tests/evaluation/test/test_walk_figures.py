@@ -121,6 +121,12 @@ class ReadWalkTest(unittest.TestCase):
         # The middle row is taken 40 + 10 ms late.
         self.assertAlmostEqual(figures.td_error_s, 0.003, places=6)
 
+    def test_with_a_known_readout_poses_are_of_the_first_row(self):
+        known = walk_figures.read_truth(self.rig, readout_is_known=True)
+        unknown = walk_figures.read_truth(self.rig)
+        self.assertEqual(known, (0.04, 0.0))
+        self.assertEqual(unknown, (0.05, 0.01))
+
     def test_resets_are_counted(self):
         self.assertEqual(self.run_with(first=600, sequence_at=100, td=0.0).resets, 1)
 

@@ -34,20 +34,27 @@ def sufficient_motion(truth):
     return float(seconds[moved[0]]) if len(moved) else None
 
 
-def read_truth(rig_path):
-    """td of the body of an image, seconds: of its middle row where the user knows no read-out.
+def read_rig(path):
+    """What a rig's file, as simulate_bag writes it, has: a dictionary."""
+    with open(path, encoding="utf-8") as file:
+        text = "".join(line for line in file if not line.startswith("%"))
+    return yaml.load(text, Loader=_OpenCvLoader)
+
+
+def read_truth(true_rig_path, readout_is_known=False):
+    """When the body was where an image shows it, by the true rig.
 
     Args:
-        rig_path: the true rig, as simulate_bag writes it.
+        true_rig_path: the true rig.
+        readout_is_known: the estimator has the read-out, or estimates it: its poses are those of
+            the first row's time. Otherwise they are those of the middle row's.
     Returns:
-        the time offset that an estimator should find that takes all rows for simultaneous, and
-        half of the read-out.
+        the time offset that it should find, and how much later than the first row its poses are,
+        seconds.
     """
-    with open(rig_path, encoding="utf-8") as file:
-        text = "".join(line for line in file if not line.startswith("%"))
-    rig = yaml.load(text, Loader=_OpenCvLoader)
-    half_readout = 0.5 * rig["rolling_shutter_tr"]
-    return rig["td"] + half_readout, half_readout
+    rig = read_rig(true_rig_path)
+    late = 0.0 if readout_is_known else 0.5 * rig["rolling_shutter_tr"]
+    return rig["td"] + late, late
 
 
 class _OpenCvLoader(yaml.SafeLoader):
@@ -58,9 +65,12 @@ _OpenCvLoader.add_constructor("tag:yaml.org,2002:opencv-matrix",
                               lambda loader, node: loader.construct_mapping(node, deep=True))
 
 
-def read_walk(run_path, true_rig_path):
+def read_walk(run_path, true_rig_path, readout_is_known=False):
     """WalkFigures of a folder that run_bag has written.
 
+    Args:
+        run_path: the folder.
+        true_rig_path, readout_is_known: see read_truth().
     Raises:
         EvaluationError where a file is missing or broken.
     """
@@ -71,8 +81,8 @@ def read_walk(run_path, true_rig_path):
         table = run.table("estimator")
     except EvaluationError:
         return WalkFigures(motion, None, 0, 0.0, 0.0, None, None, None, None)
-    td, half_readout = read_truth(true_rig_path)
-    estimate = run.trajectory("vio_live").trajectory.shifted(round(half_readout * NANOSECONDS))
+    td, late = read_truth(true_rig_path, readout_is_known)
+    estimate = run.trajectory("vio_live").trajectory.shifted(round(late * NANOSECONDS))
     begin = truth.stamps[0] + round((motion or 0.0) * NANOSECONDS)
     moving = truth.stamps[truth.stamps >= begin]
     coverage = metrics.Coverage(moving, estimate.stamps, _MAX_GAP).completeness
