@@ -77,6 +77,15 @@ constexpr const char* kKeys[] = {
     "max_num_iterations",
     "max_solver_time",
     "motion_only_ba",
+    // Self-calibration
+    "estimate_readout",
+    "readout_sigma",
+    "estimate_intrinsics",
+    "focal_length_sigma",
+    "principal_point_sigma",
+    "distortion_sigma",
+    "estimate_imu_intrinsics",
+    "imu_intrinsics_sigma",
     // Loops and maps
     "loop_closure",
     "fast_relocalization",
