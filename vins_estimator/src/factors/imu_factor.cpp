@@ -104,6 +104,19 @@ ImuJacobians imuJacobians(const Preintegration& imu, const Vector3d& g_w, const 
   return out;
 }
 
+WeightedImuRows weightedImuRows(const Preintegration& imu, const Vector3d& g_w, const NavState& i,
+                                const NavState& j, const NavState& linearized_i,
+                                const NavState& linearized_j, const ImuIntrinsics& intrinsics) {
+  const ImuJacobians J = imuJacobians(imu, g_w, linearized_i, linearized_j, intrinsics);
+  const Matrix15d& weight = imu.sqrtInformation();
+  WeightedImuRows rows;
+  rows.J << J.J_motion_i, J.J_motion_j, J.J_pose_i, J.J_pose_j;
+  rows.J = (weight * rows.J).eval();
+  rows.J_intrinsics = weight * J.J_intrinsics;
+  rows.r = weight * imuResidual(imu, g_w, i, j, intrinsics);
+  return rows;
+}
+
 Matrix15d carriedCovariance(const Preintegration& imu, const Vector3d& g_w, const NavState& i,
                             const Matrix15d& covariance) {
   const ImuJacobians J = imuJacobians(imu, g_w, i, imu.predict(i, g_w));

@@ -254,29 +254,22 @@ void WindowSystem::eliminateFromRig(const FlatLandmark& landmark, const Eliminat
 void WindowSystem::addImu(std::size_t frame) {
   const WindowState& from = window_.frames[frame - 1].state;
   const WindowState& to = window_.frames[frame].state;
-  const Preintegration& imu = window_.frames[frame].imu;
   const NavState& value_i = at_.values.states[frame - 1];
   const NavState& value_j = at_.values.states[frame];
-  const ImuIntrinsics& intrinsics = at_.values.rig.imu;
-  const ImuJacobians J = imuJacobians(imu, window_.g_w, from.linearizationPoint(value_i),
-                                      to.linearizationPoint(value_j), intrinsics);
-  // Motions i and j, then poses i and j: as the system has them.
-  Eigen::Matrix<double, 15, 30> whole;
-  whole << J.J_motion_i, J.J_motion_j, J.J_pose_i, J.J_pose_j;
-  const Matrix15d& weight = imu.sqrtInformation();
-  whole = (weight * whole).eval();
-  const Vector15d r = weight * imuResidual(imu, window_.g_w, value_i, value_j, intrinsics);
+  const WeightedImuRows rows = weightedImuRows(window_.frames[frame].imu, window_.g_w, value_i,
+                                               value_j, from.linearizationPoint(value_i),
+                                               to.linearizationPoint(value_j), at_.values.rig.imu);
   const Index motion = motionColumn(frame - 1);
   const Index pose = poseColumn(frame - 1);
-  const auto J_motion = whole.leftCols<18>();
-  const auto J_pose = whole.rightCols<12>();
+  const auto J_motion = rows.J.leftCols<18>();
+  const auto J_pose = rows.J.rightCols<12>();
   H_.block<18, 18>(motion, motion) += J_motion.transpose() * J_motion;
   H_.block<12, 18>(pose, motion) += J_pose.transpose() * J_motion;
   H_.block<12, 12>(pose, pose) += J_pose.transpose() * J_pose;
-  g_.segment<18>(motion) += J_motion.transpose() * r;
-  g_.segment<12>(pose) += J_pose.transpose() * r;
+  g_.segment<18>(motion) += J_motion.transpose() * rows.r;
+  g_.segment<12>(pose) += J_pose.transpose() * rows.r;
   if (refinesRig() && rigVariables().imu) {
-    addImuIntrinsics(frame, whole, weight * J.J_intrinsics, r);
+    addImuIntrinsics(frame, rows.J, rows.J_intrinsics, rows.r);
   }
 }
 

@@ -33,6 +33,18 @@ ImuJacobians imuJacobians(const Preintegration& imu, const Eigen::Vector3d& g_w,
 ImuJacobians imuJacobians(const Preintegration& imu, const Eigen::Vector3d& g_w, const NavState& i,
                           const NavState& j, const ImuIntrinsics& intrinsics);
 
+/// imuResidual() and its derivatives, weighted.
+struct WeightedImuRows {
+  Eigen::Matrix<double, 15, 30> J;  ///< by motions i and j, then poses i and j
+  Matrix15d J_intrinsics;           ///< by the errors of the IMU's axes
+  Vector15d r;
+};
+/// Takes the residual at `i` and `j`, the derivatives at `linearized_i` and `linearized_j`, with
+/// these errors of the IMU's axes.
+WeightedImuRows weightedImuRows(const Preintegration& imu, const Eigen::Vector3d& g_w,
+                                const NavState& i, const NavState& j, const NavState& linearized_i,
+                                const NavState& linearized_j, const ImuIntrinsics& intrinsics);
+
 /// Covariance, by ErrorState, of the state that the IMU predicts from state i, whose errors have
 /// `covariance`.
 Matrix15d carriedCovariance(const Preintegration& imu, const Eigen::Vector3d& g_w,
