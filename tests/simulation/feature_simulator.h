@@ -22,6 +22,7 @@ struct FeatureSimulatorOptions {
   double start = 0.0;        ///< of the first frame, in seconds of the motion [s]
   double duration = 60.0;    ///< from the first frame to the last [s]
   double image_rate = 20.0;  ///< [Hz]
+  double readout = 0.0;      ///< of a rolling shutter, from the first row to the last [s]
 
   int max_features = 150;           ///< tracks per frame
   double min_distance = 30.0;       ///< between tracks where one starts [px]
@@ -89,6 +90,12 @@ class FeatureSimulator {
   void makeLandmarks();
   /// True pixels of all landmarks that the camera sees.
   View look(double t_s) const;
+  /// Where a point in the camera's frame is seen; nothing where it is out of view.
+  std::optional<Eigen::Vector2d> pixelOf(const Eigen::Vector3d& p_c) const;
+  /// Where a landmark is seen when its own row is exposed; at `t_s`, the first row's time, it would
+  /// be at `first_row`.
+  std::optional<Eigen::Vector2d> pixelInItsRow(const Landmark& landmark, double t_s,
+                                               const Eigen::Vector2d& first_row) const;
   Eigen::Vector2d measure(const Eigen::Vector2d& true_pixel);
   std::optional<FeatureObservation> observe(const View& view, Track* track);
   void continueTracks(const View& view, FeatureFrame* frame);

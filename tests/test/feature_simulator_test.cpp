@@ -140,6 +140,33 @@ TEST(FeatureSimulator, LandmarksSwingWhereAskedTo) {
   EXPECT_FALSE(simulator.positionOf(1000000, 0));
 }
 
+TEST(FeatureSimulator, ARollingShutterSeesEachRowAtItsTime) {
+  FeatureSimulatorOptions options = shortOptions();
+  options.duration = 3.0;
+  options.pixel_noise = 0.0;
+  options.readout = 0.02;
+  FeatureSimulator simulator = makeSimulator(options);
+  const auto motion = makeBuiltinTrajectory("hall_loop", 1, options.duration);
+  const auto camera = eurocCamera(0);
+  double furthest = 0.0, largest_shift = 0.0;
+  for (int frame = 0; frame < 50; ++frame) {
+    const auto seen = simulator.next();
+    ASSERT_TRUE(seen);
+    const double t = motion.secondsAt(seen->stamp);
+    for (const FeatureObservation& observation : seen->observations) {
+      const auto pixelAt = [&](double t_row) {
+        const Pose T_cw = (motion.poseAt(t_row) * eurocCameraInBody(0)).inverse();
+        return *camera->project(T_cw * *simulator.positionOf(observation.id, seen->stamp));
+      };
+      const Eigen::Vector2d in_row = pixelAt(t + options.readout * observation.pixel.y() / 480.0);
+      furthest = std::max(furthest, (observation.pixel - in_row).norm());
+      largest_shift = std::max(largest_shift, (observation.pixel - pixelAt(t)).norm());
+    }
+  }
+  EXPECT_LT(furthest, 0.01);
+  EXPECT_GT(largest_shift, 2.0) << "the flight does not show it";
+}
+
 TEST(FeatureSimulator, AMinuteTakesAboutASecond) {
   const auto start = std::chrono::steady_clock::now();
   FeatureSimulatorOptions options;
