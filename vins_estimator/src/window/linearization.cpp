@@ -108,13 +108,10 @@ LinearizedObservation linearizeObservation(const BearingMeasurement& measured,
   return out;
 }
 
-double rootHuberWeight(double huber, double length) {
-  return length <= huber ? 1.0 : std::sqrt(huber / length);
-}
-
 void scaleByLoss(double huber, LinearizedObservation* observation) {
-  const double scale = rootHuberWeight(huber, observation->r.norm());
-  if (scale == 1.0) return;
+  const double norm = observation->r.norm();
+  if (norm <= huber) return;
+  const double scale = std::sqrt(huber / norm);
   observation->J_host *= scale;
   observation->J_target *= scale;
   observation->J_landmark *= scale;

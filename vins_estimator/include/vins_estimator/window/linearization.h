@@ -56,9 +56,6 @@ Eigen::Vector2d observationResidual(const BearingMeasurement& measured,
                                     std::size_t host, std::size_t target,
                                     const LandmarkParameters& landmark);
 
-/// Square root of the weight that Huber's loss gives a residual of this length [deviations].
-double rootHuberWeight(double huber, double length);
-
 /// Scales by the square root of Huber's weight. `huber`: see WindowSolverOptions.
 void scaleByLoss(double huber, LinearizedObservation* observation);
 
