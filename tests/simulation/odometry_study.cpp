@@ -79,6 +79,7 @@ estimator::EstimatorOptions estimatorOptions(const OdometryStudyOptions& options
   estimator::EstimatorOptions estimator = options.estimator;
   estimator.imu = imuOptions(options, seed).noise;
   estimator.pixel_noise = std::max(options.features.pixel_noise, 0.1);
+  estimator.image_height = eurocCamera(0)->imageSize().height;
   return estimator;
 }
 

@@ -51,6 +51,7 @@ void addSensorOptions(po::options_description* options) {
   add("vibration", withDefault(0.0), "at 90 Hz, root mean square [m/s^2]");
   add("td", withDefault(0.0), "true t_imu - t_cam [s]");
   add("rate", withDefault(features.image_rate), "frames per second");
+  add("readout", withDefault(features.readout), "of a rolling shutter [s]");
   add("pixel-noise", withDefault(features.pixel_noise), "[px]");
   add("features", withDefault(features.max_features), "tracks per frame");
   add("loss", withDefault(features.loss_probability), "of a track, per frame");
@@ -71,6 +72,7 @@ void addEstimatorOptions(po::options_description* options) {
   add("min-tracks", withDefault(estimator.min_tracks), "fewer count as lost");
   add("no-first-estimates", po::bool_switch(), "Jacobians at the current values throughout");
   add("assumed-td", withDefault(0.0), "td that the estimator is told [s]");
+  add("assumed-readout", withDefault(0.0), "read-out that the estimator is told [s]");
   add("estimate-td", po::bool_switch(), "that is a guess");
   add("estimate-extrinsic", withDefault(0),
       "0: the camera's pose is known, 1: guessed, 2: unknown");
@@ -97,6 +99,7 @@ sim::OdometryStudyOptions readOptions(const po::variables_map& values) {
   options.features.start = values["start"].as<double>();
   options.features.duration = values["duration"].as<double>();
   options.features.image_rate = values["rate"].as<double>();
+  options.features.readout = values["readout"].as<double>();
   options.features.pixel_noise = values["pixel-noise"].as<double>();
   options.features.max_features = values["features"].as<int>();
   options.features.loss_probability = values["loss"].as<double>();
@@ -111,6 +114,7 @@ sim::OdometryStudyOptions readOptions(const po::variables_map& values) {
   options.estimator.min_tracks = values["min-tracks"].as<int>();
   options.estimator.first_estimates = !values["no-first-estimates"].as<bool>();
   options.estimator.td = values["assumed-td"].as<double>();
+  options.estimator.rolling_shutter_readout = values["assumed-readout"].as<double>();
   options.estimator.estimate_td = values["estimate-td"].as<bool>();
   options.estimator.extrinsic =
       static_cast<vins::estimator::ExtrinsicMode>(values["estimate-extrinsic"].as<int>());

@@ -11,6 +11,7 @@
 #include "vins_estimator/health/continuation.h"
 #include "vins_estimator/health/failure_detector.h"
 #include "vins_estimator/health/imu_plausibility.h"
+#include "vins_estimator/health/rig_check.h"
 #include "vins_estimator/health/stillness.h"
 #include "vins_estimator/health/track_watch.h"
 #include "vins_estimator/inertial/body_twist.h"
@@ -20,6 +21,7 @@
 #include "vins_estimator/initialization/scale_convergence.h"
 #include "vins_estimator/initialization/time_offset_initializer.h"
 #include "vins_estimator/visual/rolling_shutter.h"
+#include "vins_estimator/window/rig_score.h"
 #include "window_tracker.h"
 
 namespace vins::estimator {
@@ -50,6 +52,7 @@ class Estimator::Implementation {
         stillness_(initializerOptions(options).stillness),
         plausibility_(plausibilityOptions(options)),
         track_watch_(options.min_tracks),
+        rig_check_(rigCheckOptions(options)),
         continuation_(options.imu),
         tracker_(options) {
     reset();
@@ -107,6 +110,7 @@ class Estimator::Implementation {
     calibrator_ =
         TurnCalibrator(calibratorOptions(options_), {options_.T_bc.rotation, options_.td});
     time_offset_.clear();
+    rig_check_.clear();
   }
 
  private:
@@ -233,6 +237,7 @@ class Estimator::Implementation {
     convergence_.begin(result->stamp, initialization->scale_sigma);
     if (!beginWindow(*initialization, measurements, result)) return;
     continuation_.clear();
+    rig_check_.begin(result->stamp);
     result->events.push_back(
         {result->stamp,
          Severity::kInfo,
@@ -290,7 +295,20 @@ class Estimator::Implementation {
     if (event) result->events.push_back(*event);
     if (!adjust(predicted, usesMotionOnly(), result)) return;
     report(measurements, result);
+    checkRig(result);
     tracker_.slide(sequence_, result);
+  }
+
+  /// Asks now and then whether another rig would explain the images and the IMU better.
+  void checkRig(EstimatorResult* result) {
+    const SlidingWindow& window = tracker_.window();
+    const bool is_full = window.frames.size() > static_cast<std::size_t>(options_.window_size);
+    if (!is_full || result->statistics.motion_only || convergence_.scaleSigma()) return;
+    if (!rig_check_.isDue(window.frames.front().stamp)) return;
+    const std::optional<RigScore> score = scoreRig(window, WindowSolverOptions{}.huber);
+    if (!score) return;
+    std::optional<Event> event = rig_check_.addScore(result->stamp, *score);
+    if (event) result->events.push_back(*std::move(event));
   }
 
   bool usesMotionOnly() const {
@@ -346,6 +364,7 @@ class Estimator::Implementation {
   StillnessDetector stillness_;
   ImuPlausibility plausibility_;
   TrackWatch track_watch_;
+  RigCheck rig_check_;
   Continuation continuation_;
   WindowTracker tracker_;
   std::optional<Odometry> credible_;  ///< the last that was reported

@@ -36,4 +36,18 @@ TurnCalibratorOptions calibratorOptions(const EstimatorOptions& options) {
   return result;
 }
 
+RigCheckOptions rigCheckOptions(const EstimatorOptions& options) {
+  RigCheckOptions result;
+  const auto add = [&](RigPart part, bool is_estimated) {
+    (is_estimated ? result.estimated : result.suspects).push_back(part);
+  };
+  const bool estimates_extrinsic = options.extrinsic != ExtrinsicMode::kTrusted;
+  add(RigPart::kTranslation, estimates_extrinsic);
+  add(RigPart::kRotation, estimates_extrinsic);
+  add(RigPart::kTimeOffset, options.estimate_td);
+  add(RigPart::kReadout, options.estimate_readout);
+  add(RigPart::kFocalLength, options.estimate_intrinsics);
+  return result;
+}
+
 }  // namespace vins::estimator
