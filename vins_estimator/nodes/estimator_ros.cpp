@@ -224,11 +224,19 @@ void EstimatorRos::handle(const std::vector<Event>& events) {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (const Event& event : events) {
     recent_.push_back(event);
-    if (!isInputFinding(event)) continue;
+    keepFinding(event);
+  }
+  while (recent_.size() > kRecentEvents) recent_.pop_front();
+}
+
+void EstimatorRos::keepFinding(const Event& event) {
+  if (isInputFinding(event)) {
     finding_ = event.text;
     finding_time_ = ros::WallTime::now();
   }
-  while (recent_.size() > kRecentEvents) recent_.pop_front();
+  if (event.code.rfind("rig_", 0) == 0) {
+    rig_finding_ = event.code == "rig_agrees" ? "" : event.text;
+  }
 }
 
 void EstimatorRos::handle(const EstimatorResult& result) {
@@ -248,6 +256,10 @@ void EstimatorRos::restart() {
   ROS_WARN("starting anew");
   estimator_.reset();
   publisher_.clear();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    rig_finding_.clear();
+  }
   const std::lock_guard<std::mutex> lock(propagator_mutex_);
   propagator_.reset();
 }
@@ -311,6 +323,7 @@ void EstimatorRos::summarize(diagnostic_updater::DiagnosticStatusWrapper* status
     status->mergeSummary(DiagnosticStatus::WARN,
                          "too few features: is the lens free, is there light?");
   }
+  if (!rig_finding_.empty()) status->mergeSummary(DiagnosticStatus::WARN, rig_finding_);
   if (frames_waiting_ >= kManyWaiting || frames_dropped_ > frames_dropped_told_) {
     status->mergeSummary(DiagnosticStatus::WARN,
                          "falls behind: lower max_cnt or max_num_iterations, set motion_only_ba "

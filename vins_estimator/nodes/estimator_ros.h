@@ -76,6 +76,7 @@ class EstimatorRos {
   void handle(const std::vector<Event>& events);
   void handle(const EstimatorResult& result);
   void restart();
+  void keepFinding(const Event& event);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
   void summarize(diagnostic_updater::DiagnosticStatusWrapper* status);
   std::string missingInput() const;
@@ -106,6 +107,7 @@ class EstimatorRos {
   std::deque<Event> recent_;
   std::string finding_;  // about the inputs, the latest
   ros::WallTime finding_time_;
+  std::string rig_finding_;  // what is wrong of the rig, as far as is known
 
   diagnostic_updater::Updater diagnostics_;
   ros::Subscriber imu_, acceleration_, features_, matches_, restarts_;

@@ -32,6 +32,8 @@ void InputAccount::addEvents(const std::vector<Event>& events) {
     const bool is_reason = event.code.rfind("init_", 0) == 0 || event.code.rfind("imu_", 0) == 0 ||
                            event.code == "clocks_apart";
     if (is_reason) reasons_[event.code] = event.text;
+    const bool is_about_rig = event.code.rfind("rig_", 0) == 0;
+    if (is_about_rig) rig_finding_ = event.code == "rig_agrees" ? "" : event.text;
   }
 }
 
@@ -63,6 +65,7 @@ std::string InputAccount::problems(const RecordingSummary& recording) const {
     text << "IMU           ended at second " << toSeconds(*end - recording.begin)
          << ", before the images: from there on there is no odometry\n";
   }
+  if (!rig_finding_.empty()) text << "rig           " << rig_finding_ << "\n";
   return text.str();
 }
 

@@ -68,5 +68,15 @@ TEST(InputAccount, KeepsTheLastReasonOfEachKind) {
   EXPECT_EQ(account.waitingReasons(), "  init_little_parallax: new\n");
 }
 
+TEST(InputAccount, SummarizesWhatIsWrongOfTheRigUntilThatIsTakenBack) {
+  InputAccount account;
+  EXPECT_EQ(account.problems({}), "");
+  account.addEvents({{0, Severity::kWarning, "rig_focal_length", "the focal length", {}},
+                     {1, Severity::kWarning, "rig_rotation", "the camera is turned", {}}});
+  EXPECT_EQ(account.problems({}), "rig           the camera is turned\n");
+  account.addEvents({{2, Severity::kInfo, "rig_agrees", "all is well", {}}});
+  EXPECT_EQ(account.problems({}), "");
+}
+
 }  // namespace
 }  // namespace vins::pipeline

@@ -25,7 +25,8 @@ class InputAccount {
   Event refuse(Stamp stamp, const std::string& reason);
 
   /// Keeps the last event of each reason to wait (`init_*`) and of each finding about the inputs
-  /// (`imu_*`, `clocks_apart`).
+  /// (`imu_*`, `clocks_apart`), and what the estimator finds wrong of the rig (`rig_*`) until it
+  /// takes that back (`rig_agrees`).
   void addEvents(const std::vector<Event>& events);
 
   std::size_t refused() const { return refused_; }
@@ -37,7 +38,8 @@ class InputAccount {
   /// for more than half a second behind that [ns].
   std::optional<Stamp> imuEnd() const;
 
-  /// Lines for a summary: damage, refused images, an IMU that ended early; empty where all is well.
+  /// Lines for a summary: damage, refused images, an IMU that ended early, a wrong rig; empty where
+  /// all is well.
   std::string problems(const RecordingSummary& recording) const;
 
   /// A line for each kind of reason that was given while waiting.
@@ -49,6 +51,7 @@ class InputAccount {
   std::string first_reason_;
   std::optional<Stamp> last_imu_, last_acceleration_, first_image_, last_image_;
   std::map<std::string, std::string> reasons_;  ///< by the event's code
+  std::string rig_finding_;
 };
 
 }  // namespace vins::pipeline
