@@ -5,15 +5,12 @@
 #include <ostream>
 
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
 
 namespace vins::simulation {
 namespace {
 
 constexpr double kDistance_px = 25.0;  ///< between corners
 constexpr int kLargestWidth = 1000;    ///< of an image that is not halved [px]
-constexpr int kMaxCorners = 150;
-constexpr double kQuality = 0.01;  ///< of goodFeaturesToTrack
 
 cv::Mat atCommonScale(const cv::Mat& image) {
   if (image.cols <= kLargestWidth) return image;
@@ -142,39 +139,7 @@ ImageStatistics ImageStatisticsMeter::result() const {
   return mean;
 }
 
-int TrackCounter::add(const cv::Mat& image) {
-  const cv::Mat now = atCommonScale(image).clone();
-  std::vector<cv::Point2f> kept;
-  if (!last_.empty() && !points_.empty()) {
-    std::vector<cv::Point2f> there, back;
-    std::vector<std::uint8_t> found, returned;
-    std::vector<float> error;
-    cv::calcOpticalFlowPyrLK(last_, now, points_, there, found, error);
-    cv::calcOpticalFlowPyrLK(now, last_, there, back, returned, error);
-    const cv::Rect2f inside(1.0F, 1.0F, static_cast<float>(now.cols - 2),
-                            static_cast<float>(now.rows - 2));
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const bool same = cv::norm(back[i] - points_[i]) < 0.5;
-      if (found[i] && returned[i] && same && inside.contains(there[i])) kept.push_back(there[i]);
-    }
-  }
-  points_ = kept;
-  last_ = now;
-  replenish(now);
-  return static_cast<int>(kept.size());
-}
-
-void TrackCounter::replenish(const cv::Mat& image) {
-  const int missing = kMaxCorners - static_cast<int>(points_.size());
-  if (missing <= 0) return;
-  cv::Mat mask(image.size(), CV_8UC1, cv::Scalar(255));
-  for (const cv::Point2f& p : points_) {
-    cv::circle(mask, p, static_cast<int>(kDistance_px), cv::Scalar(0), cv::FILLED);
-  }
-  std::vector<cv::Point2f> more;
-  cv::goodFeaturesToTrack(image, more, missing, kQuality, kDistance_px, mask);
-  points_.insert(points_.end(), more.begin(), more.end());
-}
+int TrackCounter::add(const cv::Mat& image) { return tracker_.add(atCommonScale(image)); }
 
 std::ostream& operator<<(std::ostream& out, const ImageStatistics& s) {
   out << "images: " << s.images << "\nmean grey: " << s.mean_grey

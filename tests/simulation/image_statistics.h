@@ -6,6 +6,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "simulation/gftt_tracker.h"
+
 namespace vins::simulation {
 
 /// What makes images hard or easy to track. Strengths and gradients are in grey values per pixel;
@@ -43,18 +45,14 @@ class ImageStatisticsMeter {
   ImageStatistics sum_;
 };
 
-/// Tracks of up to 150 corners 25 px apart (cv::goodFeaturesToTrack of quality 0.01, pyramidal
-/// Lucas-Kanade, kept where tracking back returns within half a pixel), over consecutive images.
+/// Tracks of GfttTracker, 25 px apart, over consecutive images.
 class TrackCounter {
  public:
   /// Number of tracks that are kept from the last image; nothing to keep in the first.
   int add(const cv::Mat& image);
 
  private:
-  void replenish(const cv::Mat& image);
-
-  cv::Mat last_;
-  std::vector<cv::Point2f> points_;
+  GfttTracker tracker_;
 };
 
 /// A line per figure.
