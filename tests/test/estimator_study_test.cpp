@@ -45,6 +45,32 @@ TEST(EstimatorStudy, CorrectsAnExtrinsicThatIsFiveDegreesOff) {
   EXPECT_LT(figures.extrinsic_translation_error, 0.02);
 }
 
+TEST(EstimatorStudy, FindsTheReadoutOfARollingShutter) {
+  OdometryStudyOptions options = flight("hall_loop", 25.0);
+  options.features.readout = 0.02;
+  options.estimator.estimate_readout = true;
+  options.estimator.estimate_td = true;
+  const OdometryRun run = runOdometry(options, 1);
+  ASSERT_TRUE(evaluate(run).initialised);
+  EXPECT_NEAR(run.rig.readout, 0.02, 1e-3);
+  const double known = std::sqrt(run.rig_covariance(estimator::kReadout, estimator::kReadout));
+  EXPECT_LT(known, 1e-3);
+  EXPECT_NEAR(run.rig.td, 0.0, 1e-3);
+}
+
+TEST(EstimatorStudy, LeavesIntrinsicsThatAreRightWhereTheyAre) {
+  OdometryStudyOptions options = flight("hall_loop", 25.0);
+  options.estimator.estimate_intrinsics = true;
+  options.estimator.estimate_imu_intrinsics = true;
+  const OdometryRun run = runOdometry(options, 1);
+  ASSERT_TRUE(evaluate(run).initialised);
+  const estimator::RigVector error = minus(run.rig, run.true_rig);
+  for (int i = estimator::kIntrinsics; i < estimator::kRigSize; ++i) {
+    EXPECT_LT(std::abs(error(i)), 4.0 * std::sqrt(run.rig_covariance(i, i))) << i;
+  }
+  EXPECT_LT(error.segment<2>(estimator::kIntrinsics).norm(), 3e-3);
+}
+
 TEST(EstimatorStudy, FindsAnUnknownExtrinsic) {
   OdometryStudyOptions options = flight("hall_loop", 30.0);
   options.estimator.extrinsic = estimator::ExtrinsicMode::kUnknown;
