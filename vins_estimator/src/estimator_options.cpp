@@ -34,7 +34,7 @@ MotionOnly readMotionOnly(const Parameters& parameters) {
 }
 
 void readSelfCalibration(const Parameters& parameters, EstimatorOptions* options) {
-  const auto flag = [&](const char* key) { return parameters.integerOr(key, 0, {0, 1}) == 1; };
+  const auto flag = [&](const char* key) { return parameters.flagOr(key, false); };
   const auto sigma = [&](const char* key, double* value) {
     *value = parameters.numberOr(key, *value, kSigma);
   };
