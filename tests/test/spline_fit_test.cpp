@@ -27,7 +27,7 @@ Trajectory record(const TrajectorySpline& truth, double duration, double noise_m
     Pose T_wb = truth.poseAt(0.005 * i);
     T_wb.position += noise_m * random.normal3();
     T_wb.rotation = T_wb.rotation * so3::exp(noise_rad * random.normal3());
-    trajectory.append({truth.epoch() + 5000000 * i, T_wb});
+    trajectory.append({truth.epoch() + Stamp{5000000} * i, T_wb});
   }
   return trajectory;
 }
