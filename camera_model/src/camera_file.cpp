@@ -188,6 +188,16 @@ const KalibrForm& kalibrFormOf(const Parameters& section, bool* has_distortion) 
   return kalibrForms().front();
 }
 
+/// A side of an image as Kalibr writes it.
+int pixels(double value) {
+  constexpr double kLargest = 100000.0;
+  if (!(value >= 1.0 && value <= kLargest)) {
+    throw InputError("key 'resolution': found " + exactNumber(value) +
+                     "; allowed: two whole numbers from 1 to 100000");
+  }
+  return static_cast<int>(value);
+}
+
 std::unique_ptr<Camera> readKalibr(const Parameters& file, const std::string& name) {
   const Parameters section = file.section(name);
   bool has_distortion = false;
@@ -209,8 +219,9 @@ std::unique_ptr<Camera> readKalibr(const Parameters& file, const std::string& na
   if (is_pinhole) dropIdleDenominator(&values);
   const CameraParameters p = toParameters(values);
   const std::vector<double> resolution = section.numbers("resolution", {2});
-  const ImageSize size{static_cast<int>(resolution[0]), static_cast<int>(resolution[1])};
-  return namingFile(file, [&] { return makeCamera(form.model, name, size, p); });
+  return namingFile(file, [&] {
+    return makeCamera(form.model, name, {pixels(resolution[0]), pixels(resolution[1])}, p);
+  });
 }
 
 std::string sectionText(const std::string& title, const Names& keys,

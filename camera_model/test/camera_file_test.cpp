@@ -109,6 +109,22 @@ TEST(CameraFile, ReadsKalibrsDoubleSphereAndUnifiedCameras) {
             CameraModel::kEucm);
 }
 
+TEST(CameraFile, RefusesAResolutionThatIsNoImagesSize) {
+  for (const std::string resolution : {"[4e100, 480]", "[752, 0]", "[-752, 480]"}) {
+    const std::string text =
+        "cam0:\n  camera_model: eucm\n  intrinsics: [0.6, 1.1, 317.5, 316.1, 367, 248]\n"
+        "  distortion_model: none\n  distortion_coeffs: []\n  resolution: " +
+        resolution + "\n";
+    try {
+      read(text);
+      FAIL() << resolution;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("key 'resolution'"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST(CameraFile, ReadsK3InKalibrsForm) {
   const std::string text = replaced(kKalibr, "[0.0034, 0.0007, -0.002, 0.0002]",
                                     "[0.0034, 0.0007, -0.002, 0.0002, 0.03]");
