@@ -159,7 +159,11 @@ class Estimator::Implementation {
   }
 
   /// As known, or as estimated so far; what is left of it is the window's.
-  double readout() const { return std::max(0.0, tracker_.window().rig.readout); }
+  /// Bounded, since frames wait for samples of its length.
+  double readout() const {
+    constexpr double kLongest = 0.2;  // [s], as rolling_shutter_tr may be
+    return std::min(kLongest, std::max(0.0, tracker_.window().rig.readout));
+  }
 
   void undoRollingShutter(FrameMeasurements* measurements) const {
     const SlidingWindow& window = tracker_.window();

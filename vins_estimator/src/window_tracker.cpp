@@ -93,10 +93,10 @@ void WindowTracker::setTimeOffset(double td, double sigma) {
   // another.
   constexpr double kMiddleRow = 0.5;
   RigMatrix& covariance = window_.rig_covariance;
-  const double readout = covariance(kReadout, kReadout);
-  covariance(kTimeOffset, kTimeOffset) = sigma * sigma + kMiddleRow * kMiddleRow * readout;
-  covariance(kTimeOffset, kReadout) = -kMiddleRow * readout;
-  covariance(kReadout, kTimeOffset) = -kMiddleRow * readout;
+  covariance.row(kTimeOffset) = -kMiddleRow * covariance.row(kReadout);
+  covariance.col(kTimeOffset) = covariance.row(kTimeOffset).transpose();
+  covariance(kTimeOffset, kTimeOffset) =
+      sigma * sigma + kMiddleRow * kMiddleRow * covariance(kReadout, kReadout);
 }
 
 void WindowTracker::start(const Initialization& initialization) {

@@ -75,7 +75,8 @@ TEST(ImuIntrinsics, JacobianIsThatOfNumericDifferences) {
         return stacked({moved.alpha(), moved.gamma(), moved.beta()}, imu.gamma());
       },
       15);
-  // Noise of the step's own second order is left out of the Jacobian: 1e-4 of it.
+  // The rotation is compared at the increments of `imu`, whose step the recursion takes to first
+  // order: that leaves a thousandth.
   EXPECT_LT((imu.intrinsicsJacobian() - numeric).norm(), 2e-3 * numeric.norm());
 }
 
